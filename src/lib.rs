@@ -1,0 +1,1 @@
+//! Sheet metal forming with contact: the NAFEMS contact benchmark 3 (code_aster test SSNP155).
