@@ -1,0 +1,13 @@
+# Sourced by the other scripts: how Open MPI and BLAS behave on small machines and in containers.
+
+# One thread per rank; the ranks are the parallelism.
+export OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1
+# Jobs side by side would otherwise all be pinned to the first core.
+export OMPI_MCA_hwloc_base_binding_policy=none
+# More ranks than cores are slow but correct.
+export OMPI_MCA_rmaps_base_oversubscribe=1
+# Containers often run as root, and without the rights for single-copy messages.
+if [ "$(id -u)" -eq 0 ]; then
+    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+fi
+export OMPI_MCA_btl_vader_single_copy_mechanism=none

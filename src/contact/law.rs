@@ -1,0 +1,168 @@
+//! Contact of one point as a complementarity problem with a bound on the gap.
+//!
+//! Unknowns of a point are the multiplier λ (its contact force divided by Young's modulus, mm) and
+//! the gap g ≥ 0 (mm). With φ the signed distance to the tool,
+//!
+//! ```text
+//! equilibrium        F_u -= λ ∇φ N_a
+//! closure            F_λ  = φ - g + ε λ          = 0
+//! complementarity    F_g  = λ - c (φ - g)        ⟂   g >= 0
+//! ```
+//!
+//! On the reduced set of a semismooth Newton method for variational inequalities this is the
+//! primal-dual active set method (Hintermüller, Ito, Kunisch 2003, SIAM J. Optim. 13, 865-888): an
+//! inactive point has λ = 0, an active one φ + ε λ = 0. λ has no bound: its negative trial value is
+//! what releases a point.
+
+use crate::tool::{Distance, Profile};
+
+/// Weight c of the gap in the complementarity row. It must be small: release is decided by the sign
+/// of λ - c φ at g = 0, where φ is the curvature error of the last Newton step (up to 1e-2 mm) and
+/// λ a force divided by Young's modulus (1e-6 mm and more). With c near 1 that error outweighs any
+/// real force and releases points that carry the load.
+const COMPLEMENTARITY_WEIGHT: f64 = 1e-4;
+
+/// Constants of a contact point.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactLaw {
+    /// Edge shape functions at the point.
+    pub shape: [f64; 3],
+    /// Give of the surface for a unit multiplier, ε = compliance · E / (weight · length):
+    /// millimetres per millimetre.
+    pub give: f64,
+}
+
+/// Where a contact point is and how far from the tool.
+#[derive(Clone, Copy, Debug)]
+pub struct PointPosition {
+    /// Current position, mm.
+    pub x: [f64; 2],
+    /// Distance to the tool.
+    pub distance: Distance,
+}
+
+/// Residual rows of a contact point.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactRows {
+    /// Added to the equilibrium rows of the edge's nodes (x, y of each), mm.
+    pub force: [f64; 6],
+    /// Closure row, mm.
+    pub closure: f64,
+    /// Complementarity row, mm.
+    pub complementarity: f64,
+}
+
+/// Tangent blocks of a contact point; `u` stands for the six displacements of the edge's nodes.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactTangent {
+    /// Equilibrium by displacement: -λ N_a N_b ∇∇φ.
+    pub force_u: [[f64; 6]; 6],
+    /// Equilibrium by multiplier.
+    pub force_multiplier: [f64; 6],
+    /// Closure by displacement; by multiplier it is `give`, by gap -1.
+    pub closure_u: [f64; 6],
+    /// Closure by multiplier.
+    pub closure_multiplier: f64,
+    /// Closure by gap.
+    pub closure_gap: f64,
+    /// Complementarity by displacement.
+    pub complementarity_u: [f64; 6],
+    /// Complementarity by multiplier.
+    pub complementarity_multiplier: f64,
+    /// Complementarity by gap.
+    pub complementarity_gap: f64,
+}
+
+impl ContactLaw {
+    /// Position of the point and its distance to `tool`, whose points are moved by `shift` (mm).
+    pub fn position(&self, nodes: &[[f64; 2]; 3], tool: &Profile, shift: [f64; 2]) -> PointPosition {
+        let mut x = [0.0; 2];
+        for (node, n) in nodes.iter().zip(self.shape) {
+            x[0] += n * node[0];
+            x[1] += n * node[1];
+        }
+        PointPosition {
+            x,
+            distance: tool.distance([x[0] - shift[0], x[1] - shift[1]]),
+        }
+    }
+
+    /// Residual rows at multiplier and gap (mm).
+    pub fn rows(&self, distance: &Distance, multiplier: f64, gap: f64) -> ContactRows {
+        let mut force = [0.0; 6];
+        for (a, n) in self.shape.iter().enumerate() {
+            force[2 * a] = -multiplier * n * distance.gradient[0];
+            force[2 * a + 1] = -multiplier * n * distance.gradient[1];
+        }
+        ContactRows {
+            force,
+            closure: distance.value - gap + self.give * multiplier,
+            complementarity: multiplier - COMPLEMENTARITY_WEIGHT * (distance.value - gap),
+        }
+    }
+
+    /// Tangent of [`Self::rows`].
+    pub fn tangent(&self, distance: &Distance, multiplier: f64) -> ContactTangent {
+        let [xx, xy, yy] = distance.hessian;
+        let hessian = [[xx, xy], [xy, yy]];
+        let slope: [f64; 6] =
+            std::array::from_fn(|i| self.shape[i / 2] * distance.gradient[i % 2]);
+        ContactTangent {
+            force_u: std::array::from_fn(|i| {
+                std::array::from_fn(|j| {
+                    -multiplier * self.shape[i / 2] * self.shape[j / 2] * hessian[i % 2][j % 2]
+                })
+            }),
+            force_multiplier: slope.map(|s| -s),
+            closure_u: slope,
+            closure_multiplier: self.give,
+            closure_gap: -1.0,
+            complementarity_u: slope.map(|s| -COMPLEMENTARITY_WEIGHT * s),
+            complementarity_multiplier: 1.0,
+            complementarity_gap: COMPLEMENTARITY_WEIGHT,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tool::die;
+
+    #[test]
+    fn the_tangent_agrees_with_central_differences() {
+        let tool = die(25.0, 4.0, 60.0);
+        let law = ContactLaw { shape: crate::element::edge_shape(0.3), give: 12.0 };
+        let nodes = [[26.2, -1.1], [26.9, -0.7], [26.5, -0.85]];
+        let (multiplier, gap, h) = (3e-4, 0.02, 1e-6);
+        let rows = |nodes: &[[f64; 2]; 3], multiplier: f64, gap: f64| {
+            law.rows(&law.position(nodes, &tool, [0.0; 2]).distance, multiplier, gap)
+        };
+        let distance = law.position(&nodes, &tool, [0.0; 2]).distance;
+        let exact = law.tangent(&distance, multiplier);
+        let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-8 * (1.0 + b.abs()), "{a} {b}");
+        for j in 0..6 {
+            let (mut plus, mut minus) = (nodes, nodes);
+            plus[j / 2][j % 2] += h;
+            minus[j / 2][j % 2] -= h;
+            let (up, down) = (rows(&plus, multiplier, gap), rows(&minus, multiplier, gap));
+            for i in 0..6 {
+                close(exact.force_u[i][j], (up.force[i] - down.force[i]) / (2.0 * h));
+            }
+            close(exact.closure_u[j], (up.closure - down.closure) / (2.0 * h));
+            let slope = (up.complementarity - down.complementarity) / (2.0 * h);
+            close(exact.complementarity_u[j], slope);
+        }
+        let (up, down) = (rows(&nodes, multiplier + h, gap), rows(&nodes, multiplier - h, gap));
+        for i in 0..6 {
+            close(exact.force_multiplier[i], (up.force[i] - down.force[i]) / (2.0 * h));
+        }
+        close(exact.closure_multiplier, (up.closure - down.closure) / (2.0 * h));
+        let slope = (up.complementarity - down.complementarity) / (2.0 * h);
+        close(exact.complementarity_multiplier, slope);
+        let (up, down) = (rows(&nodes, multiplier, gap + h), rows(&nodes, multiplier, gap - h));
+        close(exact.closure_gap, (up.closure - down.closure) / (2.0 * h));
+        let slope = (up.complementarity - down.complementarity) / (2.0 * h);
+        close(exact.complementarity_gap, slope);
+    }
+}

@@ -1,0 +1,9 @@
+//! In: the nodes of one surface edge, one contact point on it, a tool, a multiplier and a gap.
+//! Out: the point's share of the equilibrium, closure and complementarity equations with tangents.
+//! Never: other points, the tools' motion in time, PETSc or MPI.
+
+mod law;
+mod rule;
+
+pub use law::{ContactLaw, ContactRows, ContactTangent, PointPosition};
+pub use rule::{ContactSample, contact_rule};

@@ -1,0 +1,11 @@
+//! In: nodal coordinates, displacements and point states of one element. Out: its internal force,
+//! tangent, mass, energies and new states.
+//! Never: other elements, contact, files, PETSc or MPI.
+
+mod quad8;
+mod quadrature;
+mod shape;
+
+pub use quad8::{ElementForce, Quad8, SinglePointFailure};
+pub use quadrature::{Quadrature, gauss_points};
+pub use shape::{edge_shape, shape, shape_gradients};

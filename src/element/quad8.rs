@@ -1,0 +1,219 @@
+//! The eight-node element in plane strain, total displacements, per millimetre of width.
+
+use super::{Quadrature, gauss_points, shape, shape_gradients};
+use crate::material::{PointState, Response, TurnedOver, VonMises};
+
+/// Degrees of freedom of an element: x and y of each node, node by node.
+const DOFS: usize = 16;
+
+/// Geometry of one element in the reference configuration.
+#[derive(Clone, Debug)]
+pub struct Quad8 {
+    /// Per Gauss point: gradients of the shape functions with respect to X (1/mm), and the weight
+    /// times the Jacobian determinant (mm², that is mm³ per millimetre of width).
+    points: Vec<([[f64; 2]; 8], f64)>,
+    /// Consistent mass between nodes for unit density, mm².
+    mass: [[f64; 8]; 8],
+}
+
+/// Internal force and, on request, its tangent.
+#[derive(Clone, Copy, Debug)]
+pub struct ElementForce {
+    /// Internal force, N per mm of width.
+    pub force: [f64; DOFS],
+    /// Tangent stiffness, N/mm per mm of width; zero if it was not asked for.
+    pub stiffness: [[f64; DOFS]; DOFS],
+}
+
+/// A Gauss point that cannot be evaluated.
+#[derive(Clone, Copy, Debug, thiserror::Error)]
+#[error("Gauss point {point}: {cause}")]
+pub struct SinglePointFailure {
+    /// Which Gauss point of the element.
+    pub point: usize,
+    /// Why.
+    pub cause: TurnedOver,
+}
+
+impl Quad8 {
+    /// From the reference coordinates of the nodes (mm).
+    pub fn new(nodes: &[[f64; 2]; 8], quadrature: Quadrature) -> Self {
+        let points = gauss_points(quadrature)
+            .into_iter()
+            .map(|(xi, weight)| {
+                let (gradients, determinant) = reference_gradients(nodes, xi);
+                (gradients, weight * determinant)
+            })
+            .collect();
+        let mut mass = [[0.0; 8]; 8];
+        // The mass is integrated exactly whatever the rule of the stiffness.
+        for (xi, weight) in gauss_points(Quadrature::Full) {
+            let n = shape(xi);
+            let volume = weight * reference_gradients(nodes, xi).1;
+            for a in 0..8 {
+                for b in 0..8 {
+                    mass[a][b] += volume * n[a] * n[b];
+                }
+            }
+        }
+        Self { points, mass }
+    }
+
+    /// Consistent mass for unit density between nodes a and b, mm².
+    pub fn mass(&self) -> &[[f64; 8]; 8] {
+        &self.mass
+    }
+
+    /// Number of Gauss points.
+    pub fn point_count(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Response of one Gauss point at displacements `u` (mm) with its deformation gradient and its
+    /// reference volume (mm² per mm of width, times mm).
+    pub fn point_response(
+        &self,
+        point: usize,
+        u: &[[f64; 2]; 8],
+        material: &VonMises,
+        state: &PointState,
+    ) -> Result<(Response, [[f64; 2]; 2], f64), SinglePointFailure> {
+        let (gradients, volume) = &self.points[point];
+        let f = deformation_gradient(gradients, u);
+        let response = material
+            .respond(&f, state)
+            .map_err(|cause| SinglePointFailure { point, cause })?;
+        Ok((response, f, *volume))
+    }
+
+    /// Internal force at displacements `u` (mm) from the committed `states`, and the tangent if
+    /// `with_stiffness`. States are not changed.
+    pub fn internal_force(
+        &self,
+        u: &[[f64; 2]; 8],
+        material: &VonMises,
+        states: &[PointState],
+        with_stiffness: bool,
+        out: &mut ElementForce,
+    ) -> Result<(), SinglePointFailure> {
+        *out = ElementForce::ZERO;
+        for (point, state) in states.iter().enumerate() {
+            let (response, f, volume) = self.point_response(point, u, material, state)?;
+            let gradients = spatial_gradients(&self.points[point].0, &f);
+            let [xx, xy, yy, _] = response.kirchhoff;
+            // Traction of each node's gradient, τ · ∇N.
+            let traction = gradients.map(|g| {
+                [
+                    volume * (xx * g[0] + xy * g[1]),
+                    volume * (xy * g[0] + yy * g[1]),
+                ]
+            });
+            for a in 0..8 {
+                out.force[2 * a] += traction[a][0];
+                out.force[2 * a + 1] += traction[a][1];
+            }
+            if with_stiffness {
+                add_stiffness(&gradients, &response.tangent, volume, &traction, &mut out.stiffness);
+            }
+        }
+        if with_stiffness {
+            mirror_upper(&mut out.stiffness);
+        }
+        Ok(())
+    }
+}
+
+impl ElementForce {
+    /// All zeros.
+    pub const ZERO: Self = Self {
+        force: [0.0; DOFS],
+        stiffness: [[0.0; DOFS]; DOFS],
+    };
+}
+
+/// Adds material and geometric stiffness of one Gauss point to the upper block triangle.
+fn add_stiffness(
+    gradients: &[[f64; 2]; 8],
+    tangent: &[[f64; 3]; 3],
+    volume: f64,
+    traction: &[[f64; 2]; 8],
+    stiffness: &mut [[f64; DOFS]; DOFS],
+) {
+    for b in 0..8 {
+        let [bx, by] = gradients[b];
+        // Stress rates (xx, yy, xy) for unit velocities of node b in x and y.
+        let rate: [[f64; 2]; 3] = tangent.map(|row| {
+            [
+                volume * (row[0] * bx + row[2] * by),
+                volume * (row[1] * by + row[2] * bx),
+            ]
+        });
+        for a in 0..=b {
+            let [ax, ay] = gradients[a];
+            let geometric = traction[a][0] * bx + traction[a][1] * by;
+            for j in 0..2 {
+                stiffness[2 * a][2 * b + j] += ax * rate[0][j] + ay * rate[2][j];
+                stiffness[2 * a + 1][2 * b + j] += ay * rate[1][j] + ax * rate[2][j];
+            }
+            stiffness[2 * a][2 * b] += geometric;
+            stiffness[2 * a + 1][2 * b + 1] += geometric;
+        }
+    }
+}
+
+/// Copies the upper block triangle to the lower one.
+fn mirror_upper(stiffness: &mut [[f64; DOFS]; DOFS]) {
+    for i in 0..DOFS {
+        for j in 0..i {
+            stiffness[i][j] = stiffness[j][i];
+        }
+    }
+}
+
+/// Gradients of the shape functions with respect to X, and the Jacobian determinant.
+fn reference_gradients(nodes: &[[f64; 2]; 8], xi: [f64; 2]) -> ([[f64; 2]; 8], f64) {
+    let local = shape_gradients(xi);
+    // jacobian[i][j] = dX_i / dξ_j
+    let mut jacobian = [[0.0; 2]; 2];
+    for (x, g) in nodes.iter().zip(&local) {
+        for i in 0..2 {
+            for j in 0..2 {
+                jacobian[i][j] += x[i] * g[j];
+            }
+        }
+    }
+    let determinant = determinant(&jacobian);
+    (transform(&local, &jacobian, determinant), determinant)
+}
+
+/// Gradients with respect to x from those with respect to X.
+fn spatial_gradients(reference: &[[f64; 2]; 8], f: &[[f64; 2]; 2]) -> [[f64; 2]; 8] {
+    transform(reference, f, determinant(f))
+}
+
+/// Each gradient times the inverse of `map`.
+fn transform(gradients: &[[f64; 2]; 8], map: &[[f64; 2]; 2], determinant: f64) -> [[f64; 2]; 8] {
+    gradients.map(|g| {
+        [
+            (g[0] * map[1][1] - g[1] * map[1][0]) / determinant,
+            (g[1] * map[0][0] - g[0] * map[0][1]) / determinant,
+        ]
+    })
+}
+
+fn determinant(m: &[[f64; 2]; 2]) -> f64 {
+    m[0][0] * m[1][1] - m[0][1] * m[1][0]
+}
+
+/// F = I + Σ u_a ⊗ ∇N_a.
+fn deformation_gradient(gradients: &[[f64; 2]; 8], u: &[[f64; 2]; 8]) -> [[f64; 2]; 2] {
+    let mut f = [[1.0, 0.0], [0.0, 1.0]];
+    for (u, g) in u.iter().zip(gradients) {
+        for i in 0..2 {
+            for j in 0..2 {
+                f[i][j] += u[i] * g[j];
+            }
+        }
+    }
+    f
+}

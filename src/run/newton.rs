@@ -1,0 +1,57 @@
+//! When a Newton step is damped, and where a Newton solve starts.
+
+/// Full steps are trusted up to this iteration.
+const TRUSTED_ITERATIONS: usize = 5;
+/// A residual that fell by less than this factor over two iterations stagnates.
+const STAGNATION: f64 = 0.7;
+/// Length of a damped step.
+const DAMPING: f64 = 0.5;
+
+/// Damping of stagnating Newton solves.
+///
+/// A Gauss point that is elastic at the solution can jump between opposite sides of the yield
+/// surface for ever, because the plastic tangent is much softer than the elastic one and a full step
+/// overshoots. Half a step lands between them.
+#[derive(Clone, Debug, Default)]
+pub struct Damping {
+    /// Residual norms of the solve so far, mm.
+    norms: Vec<f64>,
+    last_was_full: bool,
+}
+
+impl Damping {
+    /// Length of the step from an iterate with residual norm `norm` at `iteration` (0 starts a new
+    /// solve).
+    pub fn step_length(&mut self, iteration: usize, norm: f64) -> f64 {
+        if iteration == 0 {
+            self.norms.clear();
+            self.last_was_full = true;
+        }
+        self.norms.push(norm);
+        let stagnates = iteration >= TRUSTED_ITERATIONS
+            && self.norms.len() > 2
+            && norm > STAGNATION * self.norms[self.norms.len() - 3];
+        let length = if stagnates && self.last_was_full { DAMPING } else { 1.0 };
+        self.last_was_full = length == 1.0;
+        length
+    }
+
+    /// Residual norms of the current solve, mm.
+    pub fn norms(&self) -> &[f64] {
+        &self.norms
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_stagnation_is_damped_and_only_every_other_time() {
+        let mut damping = Damping::default();
+        let falling = (0..12).map(|k| damping.step_length(k, 0.1_f64.powi(k as i32)));
+        assert!(falling.into_iter().all(|l| l == 1.0));
+        let hanging: Vec<f64> = (0..9).map(|k| damping.step_length(k, 1e-3)).collect();
+        assert_eq!(hanging, [1.0, 1.0, 1.0, 1.0, 1.0, 0.5, 1.0, 0.5, 1.0]);
+    }
+}

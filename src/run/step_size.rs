@@ -1,0 +1,122 @@
+//! How long the next step is: from the iterations of the last one, and so that certain times are
+//! hit exactly.
+
+/// Up to so many Newton iterations the step may grow.
+const EASY_ITERATIONS: usize = 10;
+/// Beyond so many it shrinks.
+const HARD_ITERATIONS: usize = 20;
+/// Factor of growth and shrinkage.
+const FACTOR: f64 = 1.5;
+/// Steps without growth after a refused solve.
+const CALM_STEPS: usize = 1;
+/// Two times closer than this share of the whole are the same.
+const SAME_TIME: f64 = 1e-10;
+
+/// Step size control.
+#[derive(Clone, Debug)]
+pub struct StepControl {
+    /// Step the control would take if no landmark were near, ms.
+    wanted: f64,
+    /// Step handed out last, ms.
+    planned: f64,
+    largest: f64,
+    /// Times to hit exactly, ascending; the last one ends the run.
+    landmarks: Vec<f64>,
+    calm: usize,
+}
+
+impl StepControl {
+    /// Starts with `first` and never exceeds `largest` (ms). `landmarks` are hit exactly; the last
+    /// is the end.
+    pub fn new(first: f64, largest: f64, mut landmarks: Vec<f64>) -> Self {
+        landmarks.sort_by(f64::total_cmp);
+        let mut control = Self {
+            wanted: first.min(largest),
+            planned: first,
+            largest,
+            landmarks,
+            calm: 0,
+        };
+        control.planned = control.clip(0.0);
+        control
+    }
+
+    /// The step planned last, ms.
+    pub fn planned(&self) -> f64 {
+        self.planned
+    }
+
+    /// The end of the run, ms.
+    pub fn end(&self) -> f64 {
+        self.landmarks.last().copied().unwrap_or(0.0)
+    }
+
+    /// Whether `t` is the time `mark`.
+    pub fn is_at(&self, t: f64, mark: f64) -> bool {
+        (t - mark).abs() <= SAME_TIME * self.end()
+    }
+
+    /// Next step after one of length `dt` to time `t` was accepted with `iterations` iterations; a
+    /// `dt` shorter than planned tells that solves were refused.
+    pub fn accepted(&mut self, t: f64, dt: f64, iterations: usize) -> f64 {
+        if dt < (1.0 - 1e-6) * self.planned {
+            self.wanted = dt;
+            self.calm = CALM_STEPS;
+        } else if iterations > HARD_ITERATIONS {
+            self.wanted = dt / FACTOR;
+        } else if self.calm > 0 {
+            self.calm -= 1;
+        } else if iterations <= EASY_ITERATIONS {
+            // A step that was clipped to a landmark does not shorten the ones after it.
+            self.wanted = self.wanted.max(dt * FACTOR).min(self.largest);
+        }
+        self.planned = self.clip(t);
+        self.planned
+    }
+
+    /// The wanted step, shortened so that the next landmark is hit by equal steps.
+    fn clip(&self, t: f64) -> f64 {
+        let next = self.landmarks.iter().find(|&&mark| mark > t && !self.is_at(t, mark));
+        let Some(next) = next else {
+            return self.wanted;
+        };
+        let left = next - t;
+        if left <= self.wanted * (1.0 + 1e-9) {
+            left
+        } else if left < 2.0 * self.wanted {
+            0.5 * left
+        } else {
+            self.wanted
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn landmarks_are_hit_and_growth_goes_on_after_them() {
+        let mut control = StepControl::new(1.0, 9.0, vec![900.0, 30.0, 1000.0]);
+        let (mut t, mut steps, mut hit) = (0.0, 0, 0);
+        let mut dt = control.planned();
+        while !control.is_at(t, control.end()) {
+            assert!(dt > 0.0 && dt <= 9.0);
+            t += dt;
+            steps += 1;
+            hit += [30.0, 900.0, 1000.0].iter().filter(|&&m| control.is_at(t, m)).count();
+            dt = control.accepted(t, dt, 5);
+        }
+        assert_eq!(hit, 3);
+        assert!(steps < 125, "{steps} steps");
+    }
+
+    #[test]
+    fn a_refused_solve_shortens_the_steps_after_it() {
+        let mut control = StepControl::new(8.0, 9.0, vec![1000.0]);
+        assert_eq!(control.accepted(2.0, 2.0, 6), 2.0);
+        assert_eq!(control.accepted(4.0, 2.0, 6), 2.0);
+        assert_eq!(control.accepted(6.0, 2.0, 6), 3.0);
+        assert_eq!(control.accepted(9.0, 3.0, 25), 2.0);
+    }
+}

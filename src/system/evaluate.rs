@@ -1,0 +1,188 @@
+//! Residual and Jacobian of one rank's share.
+//!
+//! Forces are divided by Young's modulus, so that every row is in millimetres:
+//!
+//! ```text
+//! F_u = (R_int(u) + M a) / E - Σ λ ∇φ N        and the two rows of each contact point
+//! ```
+
+use super::LocalSystem;
+use super::pattern::{CONTACT_ENTRIES, ELEMENT_ENTRIES};
+use crate::element::{ElementForce, SinglePointFailure};
+
+/// An element that cannot be evaluated.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("element {element} at ({:.3}, {:.3}) mm, {cause}", position[0], position[1])]
+pub struct ElementFailure {
+    /// Mesh number of the element.
+    pub element: usize,
+    /// Its current position, mm.
+    pub position: [f64; 2],
+    /// What is wrong.
+    pub cause: SinglePointFailure,
+}
+
+impl LocalSystem {
+    /// Adds this rank's share of the residual at time `t` (ms), unknowns `u` and their second time
+    /// derivatives `a` (all local; mm, mm/ms²) to `out`, which is set to zero first.
+    pub fn residual(
+        &self,
+        t: f64,
+        u: &[f64],
+        a: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), ElementFailure> {
+        out.fill(0.0);
+        self.add_internal_forces(u, out)?;
+        self.add_inertia(a, out);
+        self.add_contact(t, u, out);
+        for &unknown in &self.fixed {
+            out[unknown] = if self.owned[unknown / 2] { u[unknown] } else { 0.0 };
+        }
+        Ok(())
+    }
+
+    fn add_internal_forces(&self, u: &[f64], out: &mut [f64]) -> Result<(), ElementFailure> {
+        let scale = 1.0 / self.problem.young_modulus;
+        let mut local = ElementForce::ZERO;
+        for element in 0..self.elements.len() {
+            self.element_force(element, u, false, &mut local)?;
+            for (a, &n) in self.connectivity[element].iter().enumerate() {
+                out[2 * n] += scale * local.force[2 * a];
+                out[2 * n + 1] += scale * local.force[2 * a + 1];
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the inertia forces of accelerations `a` divided by Young's modulus.
+    pub(super) fn add_inertia(&self, a: &[f64], out: &mut [f64]) {
+        let scale = self.problem.density / self.problem.young_modulus;
+        if scale == 0.0 {
+            return;
+        }
+        for (element, nodes) in self.connectivity.iter().enumerate() {
+            let acceleration = self.element_values(element, a);
+            for (row, &n) in self.kernels[element].mass().iter().zip(nodes) {
+                for k in 0..2 {
+                    let sum: f64 = row.iter().zip(&acceleration).map(|(m, a)| m * a[k]).sum();
+                    out[2 * n + k] += scale * sum;
+                }
+            }
+        }
+    }
+
+    fn add_contact(&self, t: f64, u: &[f64], out: &mut [f64]) {
+        for (point, contact) in self.contacts.iter().enumerate() {
+            let m = self.multiplier(point);
+            let (tool, shift) = self.problem.tool(contact.side, t);
+            let position = contact.law.position(&self.edge_positions(contact, u), tool, shift);
+            let rows = contact.law.rows(&position.distance, u[m], u[m + 1]);
+            for (i, force) in rows.force.iter().enumerate() {
+                out[2 * contact.nodes[i / 2] + i % 2] += force;
+            }
+            out[m] = rows.closure;
+            out[m + 1] = rows.complementarity;
+        }
+    }
+
+    /// Values of the Jacobian's entries (see [`Self::jacobian_pattern`]) at time `t` and unknowns
+    /// `u`, with `shift` the derivative of the acceleration by the unknown (1/ms²).
+    pub fn jacobian(
+        &self,
+        t: f64,
+        u: &[f64],
+        shift: f64,
+        values: &mut [f64],
+    ) -> Result<(), ElementFailure> {
+        let scale = 1.0 / self.problem.young_modulus;
+        let inertia = scale * shift * self.problem.density;
+        let (element_values, rest) = values.split_at_mut(ELEMENT_ENTRIES * self.elements.len());
+        let (contact_values, fixed) = rest.split_at_mut(CONTACT_ENTRIES * self.contacts.len());
+        let mut local = ElementForce::ZERO;
+        for (element, out) in element_values.chunks_exact_mut(ELEMENT_ENTRIES).enumerate() {
+            self.element_force(element, u, true, &mut local)?;
+            let mass = self.kernels[element].mass();
+            for (i, row) in local.stiffness.iter().enumerate() {
+                let out = &mut out[16 * i..16 * (i + 1)];
+                for (value, stiffness) in out.iter_mut().zip(row) {
+                    *value = scale * stiffness;
+                }
+                for (b, m) in mass[i / 2].iter().enumerate() {
+                    out[2 * b + i % 2] += inertia * m;
+                }
+            }
+        }
+        for (point, out) in contact_values.chunks_exact_mut(CONTACT_ENTRIES).enumerate() {
+            self.contact_jacobian(t, u, point, out);
+        }
+        fixed.fill(1.0);
+        Ok(())
+    }
+
+    fn contact_jacobian(&self, t: f64, u: &[f64], point: usize, out: &mut [f64]) {
+        let contact = &self.contacts[point];
+        let (tool, shift) = self.problem.tool(contact.side, t);
+        let position = contact.law.position(&self.edge_positions(contact, u), tool, shift);
+        let tangent = contact.law.tangent(&position.distance, u[self.multiplier(point)]);
+        for (i, row) in tangent.force_u.iter().enumerate() {
+            out[6 * i..6 * (i + 1)].copy_from_slice(row);
+        }
+        out[36..42].copy_from_slice(&tangent.force_multiplier);
+        out[42..48].copy_from_slice(&tangent.closure_u);
+        out[48] = tangent.closure_multiplier;
+        out[49] = tangent.closure_gap;
+        out[50..56].copy_from_slice(&tangent.complementarity_u);
+        out[56] = tangent.complementarity_multiplier;
+        out[57] = tangent.complementarity_gap;
+    }
+
+    fn element_force(
+        &self,
+        element: usize,
+        u: &[f64],
+        with_stiffness: bool,
+        out: &mut ElementForce,
+    ) -> Result<(), ElementFailure> {
+        self.kernels[element]
+            .internal_force(
+                &self.element_values(element, u),
+                &self.problem.material,
+                self.element_states(element),
+                with_stiffness,
+                out,
+            )
+            .map_err(|cause| self.element_failure(element, u, cause))
+    }
+
+    pub(super) fn element_failure(
+        &self,
+        element: usize,
+        u: &[f64],
+        cause: SinglePointFailure,
+    ) -> ElementFailure {
+        let corner = self.connectivity[element][0];
+        let [x, y] = self.coordinates[corner];
+        ElementFailure {
+            element: self.elements[element],
+            position: [x + u[2 * corner], y + u[2 * corner + 1]],
+            cause,
+        }
+    }
+
+    /// Takes the states at unknowns `u` as history. Call it once per accepted step.
+    pub fn commit(&mut self, u: &[f64]) -> Result<(), ElementFailure> {
+        let count = self.problem.quadrature.point_count();
+        for element in 0..self.elements.len() {
+            let values = self.element_values(element, u);
+            for point in 0..count {
+                let index = count * element + point;
+                let (response, ..) = self.kernels[element]
+                    .point_response(point, &values, &self.problem.material, &self.states[index])
+                    .map_err(|cause| self.element_failure(element, u, cause))?;
+                self.states[index] = response.state;
+            }
+        }
+        Ok(())
+    }
+}

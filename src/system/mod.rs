@@ -1,0 +1,20 @@
+//! In: the problem (mesh, material, tools, motion) and this rank's unknowns. Out: residual, Jacobian
+//! and what can be measured on a state; keeps the committed history of the material points.
+//! Never: decides on steps, prints, or writes files.
+
+mod distributed;
+mod evaluate;
+mod local;
+mod measure;
+mod numbering;
+mod pattern;
+mod problem;
+mod sample;
+
+pub use distributed::{EvaluationFailure, System};
+pub use evaluate::ElementFailure;
+pub use local::LocalSystem;
+pub use measure::{Measures, PartialMeasures};
+pub use numbering::{Numbering, UNKNOWNS_PER_POINT};
+pub use problem::Problem;
+pub use sample::{ContactPointSample, FieldSampler};

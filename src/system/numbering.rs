@@ -1,0 +1,101 @@
+//! Global rows of the unknowns: rank by rank, first the displacements of the nodes a rank owns, then
+//! multiplier and gap of each of its contact points.
+
+use crate::mesh::{Partition, SheetMesh};
+
+/// Unknowns of a contact point: multiplier and gap.
+pub const UNKNOWNS_PER_POINT: usize = 2;
+
+/// Owners and rows of all unknowns, the same on every rank.
+#[derive(Clone, Debug)]
+pub struct Numbering {
+    /// Owning rank of each node.
+    pub node_owner: Vec<usize>,
+    /// Row of the x displacement of each node; y follows.
+    pub node_row: Vec<usize>,
+    /// Row of the multiplier of the first contact point of each surface edge; the gap follows, then
+    /// the edge's next point.
+    pub edge_row: Vec<usize>,
+    /// First row of each rank, and the number of rows at the end.
+    pub rank_rows: Vec<usize>,
+}
+
+impl Numbering {
+    /// Numbers the unknowns of `mesh` with `points` contact points per surface edge. A node belongs
+    /// to the lowest rank among its elements, a contact point to the rank of its element.
+    pub fn new(mesh: &SheetMesh, partition: &Partition, ranks: usize, points: usize) -> Self {
+        let mut node_owner = vec![usize::MAX; mesh.nodes.len()];
+        for (element, nodes) in mesh.elements.iter().enumerate() {
+            for &node in nodes {
+                node_owner[node] = node_owner[node].min(partition[element]);
+            }
+        }
+        let edge_unknowns = UNKNOWNS_PER_POINT * points;
+        let edge_owner = |edge: usize| partition[mesh.surface[edge].element];
+        let mut sizes = vec![0; ranks];
+        for &owner in &node_owner {
+            sizes[owner] += 2;
+        }
+        let node_unknowns = sizes.clone();
+        for edge in 0..mesh.surface.len() {
+            sizes[edge_owner(edge)] += edge_unknowns;
+        }
+        let mut rank_rows = vec![0];
+        for size in &sizes {
+            rank_rows.push(rank_rows[rank_rows.len() - 1] + size);
+        }
+        let mut next = rank_rows.clone();
+        let node_row = node_owner
+            .iter()
+            .map(|&owner| {
+                let row = next[owner];
+                next[owner] += 2;
+                row
+            })
+            .collect();
+        let mut next: Vec<usize> = (0..ranks).map(|r| rank_rows[r] + node_unknowns[r]).collect();
+        let edge_row = (0..mesh.surface.len())
+            .map(|edge| {
+                let row = next[edge_owner(edge)];
+                next[edge_owner(edge)] += edge_unknowns;
+                row
+            })
+            .collect();
+        Self { node_owner, node_row, edge_row, rank_rows }
+    }
+
+    /// Rows owned by `rank`.
+    pub fn row_count(&self, rank: usize) -> usize {
+        self.rank_rows[rank + 1] - self.rank_rows[rank]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::partition;
+
+    #[test]
+    fn every_row_is_used_once() {
+        let mesh = SheetMesh::new(60.0, 1.0, 20, 2);
+        let (ranks, points) = (3, 4);
+        let parts = partition(&mesh, ranks).unwrap();
+        let numbering = Numbering::new(&mesh, &parts, ranks, points);
+        let total = numbering.rank_rows[ranks];
+        let mut seen = vec![false; total];
+        let mut mark = |row: usize| {
+            assert!(!seen[row]);
+            seen[row] = true;
+        };
+        for (node, &row) in numbering.node_row.iter().enumerate() {
+            mark(row);
+            mark(row + 1);
+            let owner = numbering.node_owner[node];
+            assert!(row >= numbering.rank_rows[owner] && row < numbering.rank_rows[owner + 1]);
+        }
+        for &row in &numbering.edge_row {
+            (0..UNKNOWNS_PER_POINT * points).for_each(|k| mark(row + k));
+        }
+        assert!(seen.iter().all(|&s| s));
+    }
+}

@@ -1,0 +1,158 @@
+//! Fields for pictures: nodal averages of what the Gauss points say, and the contact points' values.
+
+use super::LocalSystem;
+use super::evaluate::ElementFailure;
+use crate::element::{gauss_points, shape};
+use crate::mesh::SurfaceSide;
+
+/// Values summed at a node over its elements and contact points: four stress components and the
+/// plastic strain (each weighted by one per element), the number of elements, contact force (N per
+/// mm of width) and contact length (mm).
+pub(super) const NODE_CHANNELS: usize = 8;
+
+/// What is known at a contact point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactPointSample {
+    /// Position in the reference configuration, mm.
+    pub reference: [f64; 2],
+    /// Displacement, mm.
+    pub displacement: [f64; 2],
+    /// Contact pressure, MPa.
+    pub pressure: f64,
+    /// Signed distance to the tool, mm.
+    pub gap: f64,
+    /// Whether it carries a force.
+    pub active: bool,
+}
+
+/// Extrapolates Gauss point values to the nodes of an element by a least squares bilinear fit.
+#[derive(Clone, Debug)]
+pub struct FieldSampler {
+    /// Value at node a = Σ_q weights[a][q] · value at Gauss point q.
+    weights: Vec<[f64; 8]>,
+}
+
+impl LocalSystem {
+    /// The sampler for this problem's Gauss rule.
+    pub fn field_sampler(&self) -> FieldSampler {
+        let points = gauss_points(self.problem.quadrature);
+        let count = points.len() as f64;
+        // On a symmetric tensor rule 1, ξ, η and ξη are orthogonal: the fit needs no solve.
+        let mean_square = points.iter().map(|(x, _)| x[0] * x[0]).sum::<f64>() / count;
+        let nodes: [[f64; 2]; 8] = [
+            [-1.0, -1.0],
+            [1.0, -1.0],
+            [1.0, 1.0],
+            [-1.0, 1.0],
+            [0.0, -1.0],
+            [1.0, 0.0],
+            [0.0, 1.0],
+            [-1.0, 0.0],
+        ];
+        debug_assert!(nodes.iter().enumerate().all(|(a, &x)| (shape(x)[a] - 1.0).abs() < 1e-12));
+        let weights = points
+            .iter()
+            .map(|([xi, eta], _)| {
+                nodes.map(|[xa, ea]| {
+                    let (along, across) = (xi * xa / mean_square, eta * ea / mean_square);
+                    (1.0 + along) * (1.0 + across) / count
+                })
+            })
+            .collect();
+        FieldSampler { weights }
+    }
+
+    /// This rank's nodal sums at unknowns `u` (local), [`NODE_CHANNELS`] per local node.
+    pub(super) fn nodal_sums(
+        &self,
+        sampler: &FieldSampler,
+        u: &[f64],
+    ) -> Result<Vec<[f64; NODE_CHANNELS]>, ElementFailure> {
+        let mut sums = vec![[0.0; NODE_CHANNELS]; self.nodes.len()];
+        for (element, nodes) in self.connectivity.iter().enumerate() {
+            let values = self.element_values(element, u);
+            for (point, state) in self.element_states(element).iter().enumerate() {
+                let (response, f, _) = self.kernels[element]
+                    .point_response(point, &values, &self.problem.material, state)
+                    .map_err(|cause| self.element_failure(element, u, cause))?;
+                let volume_ratio = f[0][0] * f[1][1] - f[0][1] * f[1][0];
+                let [xx, xy, yy, zz] = response.kirchhoff.map(|s| s / volume_ratio);
+                let channels = [xx, yy, zz, xy, state.equivalent_plastic_strain];
+                for (&node, weight) in nodes.iter().zip(sampler.weights[point]) {
+                    for (sum, channel) in sums[node].iter_mut().zip(channels) {
+                        *sum += weight * channel;
+                    }
+                }
+            }
+            for &node in nodes {
+                sums[node][5] += 1.0;
+            }
+        }
+        for (point, contact) in self.contacts.iter().enumerate() {
+            let force = self.problem.young_modulus * u[self.multiplier(point)];
+            let share = half_edge_hats(&contact.law.shape);
+            for (&node, share) in contact.nodes.iter().zip(share) {
+                sums[node][6] += share * force;
+                sums[node][7] += share * contact.length;
+            }
+        }
+        Ok(sums)
+    }
+
+    /// Signed distance of every local node to the tool its face can touch (inner nodes: to the
+    /// nearer one) at time `t` (ms), mm.
+    pub(super) fn nodal_gaps(&self, t: f64, u: &[f64]) -> Vec<f64> {
+        let thickness = self.problem.mesh.nodes[self.problem.mesh.point_a][1];
+        let gap = |side: SurfaceSide, x: [f64; 2]| {
+            let (tool, shift) = self.problem.tool(side, t);
+            tool.distance([x[0] - shift[0], x[1] - shift[1]]).value
+        };
+        self.coordinates
+            .iter()
+            .enumerate()
+            .map(|(n, [x, y])| {
+                let now = [x + u[2 * n], y + u[2 * n + 1]];
+                if *y <= 0.0 {
+                    gap(SurfaceSide::Bottom, now)
+                } else if *y >= thickness {
+                    gap(SurfaceSide::Top, now)
+                } else {
+                    gap(SurfaceSide::Bottom, now).min(gap(SurfaceSide::Top, now))
+                }
+            })
+            .collect()
+    }
+
+    /// All contact points of this rank at time `t` (ms) and unknowns `u` (local).
+    pub fn contact_points(&self, t: f64, u: &[f64]) -> Vec<ContactPointSample> {
+        self.contacts
+            .iter()
+            .enumerate()
+            .map(|(point, contact)| {
+                let m = self.multiplier(point);
+                let (tool, shift) = self.problem.tool(contact.side, t);
+                let nodes = self.edge_positions(contact, u);
+                let position = contact.law.position(&nodes, tool, shift);
+                let reference = [0, 1].map(|k| {
+                    let at = |n: &usize| self.coordinates[*n][k];
+                    contact.nodes.iter().zip(contact.law.shape).map(|(n, s)| s * at(n)).sum()
+                });
+                ContactPointSample {
+                    reference,
+                    displacement: [position.x[0] - reference[0], position.x[1] - reference[1]],
+                    pressure: self.problem.young_modulus * u[m] / contact.length,
+                    gap: position.distance.value,
+                    active: u[m + 1] <= 0.0 && u[m] > 0.0,
+                }
+            })
+            .collect()
+    }
+}
+
+/// Piecewise linear hats of the three nodes of an edge (left, right, middle) at the point with the
+/// given quadratic shape functions.
+fn half_edge_hats(shape: &[f64; 3]) -> [f64; 3] {
+    // The right minus the left shape function is ξ.
+    let xi = shape[1] - shape[0];
+    [(-xi).max(0.0), xi.max(0.0), 1.0 - xi.abs()]
+}

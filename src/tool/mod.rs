@@ -1,0 +1,11 @@
+//! In: the radii of punch and die and a point. Out: signed distance to the tool with its first and
+//! second derivatives, arc length along it, and the tool's motion in time.
+//! Never: the sheet, the contact forces, PETSc or MPI.
+
+mod benchmark;
+mod motion;
+mod profile;
+
+pub use benchmark::{die, punch};
+pub use motion::PunchMotion;
+pub use profile::{Distance, Piece, Profile};

@@ -1,0 +1,62 @@
+//! The punch's way in time: down by the stroke, then up again.
+
+/// Stroke against time, linear in each phase.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PunchMotion {
+    /// Full stroke, mm.
+    pub stroke: f64,
+    /// Share of the stroke by which the punch goes back.
+    pub unload_fraction: f64,
+    /// Duration of the stroke, ms.
+    pub time_load: f64,
+    /// Duration of the way back, ms.
+    pub time_unload: f64,
+}
+
+impl PunchMotion {
+    /// How far the punch is down at time `t` (ms), mm.
+    pub fn depth(&self, t: f64) -> f64 {
+        let back = ((t - self.time_load) / self.time_unload).clamp(0.0, 1.0);
+        let down = (t / self.time_load).clamp(0.0, 1.0);
+        self.stroke * (down - self.unload_fraction * back)
+    }
+
+    /// The end of the whole motion, ms.
+    pub fn end(&self) -> f64 {
+        if self.unload_fraction > 0.0 {
+            self.time_load + self.time_unload
+        } else {
+            self.time_load
+        }
+    }
+
+    /// The time on the way down at which the punch is at `depth` (mm), ms.
+    pub fn time_at_depth(&self, depth: f64) -> f64 {
+        self.time_load * depth / self.stroke
+    }
+
+    /// Velocity of the punch at the start (downward negative), mm/ms.
+    pub fn initial_velocity(&self) -> f64 {
+        -self.stroke / self.time_load
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_are_hit_exactly() {
+        let motion = PunchMotion {
+            stroke: 28.5,
+            unload_fraction: 0.1,
+            time_load: 900.0,
+            time_unload: 100.0,
+        };
+        assert_eq!(motion.depth(0.0), 0.0);
+        assert_eq!(motion.depth(900.0), 28.5);
+        assert!((motion.depth(1000.0) - 25.65).abs() < 1e-14);
+        assert_eq!(motion.end(), 1000.0);
+        assert!((motion.depth(motion.time_at_depth(10.0)) - 10.0).abs() < 1e-14);
+    }
+}

@@ -1,0 +1,252 @@
+//! Element, return map and assembly against finite differences and invariances. No PETSc: seconds.
+
+mod common;
+
+use common::{Noise, aluminium, small_problem};
+use ssnp155::element::{ElementForce, Quad8, Quadrature};
+use ssnp155::material::{PointState, VonMises};
+use ssnp155::mesh::partition;
+use ssnp155::system::{LocalSystem, Numbering, Problem};
+
+const NODES: [[f64; 2]; 8] = [
+    [0.0, 0.0],
+    [0.35, 0.01],
+    [0.36, 0.2],
+    [0.01, 0.21],
+    [0.175, 0.0],
+    [0.355, 0.1],
+    [0.18, 0.205],
+    [0.0, 0.1],
+];
+
+/// A bent, stretched and turned element: strains of `size`.
+fn displacement(size: f64, noise: &mut Noise) -> [[f64; 2]; 8] {
+    let (sin, cos) = 0.7_f64.sin_cos();
+    NODES.map(|[x, y]| {
+        let bent = [x * (1.0 + size * (y - 0.1) / 0.1), y * (1.0 - 0.5 * size)];
+        let turned = [cos * bent[0] - sin * bent[1], sin * bent[0] + cos * bent[1]];
+        [
+            turned[0] - x + 0.02 * size * noise.next(),
+            turned[1] - y + 0.02 * size * noise.next(),
+        ]
+    })
+}
+
+fn force(kernel: &Quad8, u: &[[f64; 2]; 8], material: &VonMises, states: &[PointState]) -> ElementForce {
+    let mut out = ElementForce::ZERO;
+    kernel.internal_force(u, material, states, true, &mut out).unwrap();
+    out
+}
+
+/// States after a first plastic step, so that the second one starts from history.
+fn deformed_states(kernel: &Quad8, u: &[[f64; 2]; 8], material: &VonMises) -> Vec<PointState> {
+    (0..kernel.point_count())
+        .map(|q| kernel.point_response(q, u, material, &PointState::VIRGIN).unwrap().0.state)
+        .collect()
+}
+
+#[test]
+fn the_element_tangent_agrees_with_central_differences() {
+    let material = aluminium();
+    for quadrature in [Quadrature::Reduced, Quadrature::Full] {
+        for (size, plastic) in [(1e-3, false), (0.02, true), (0.2, true)] {
+            let mut noise = Noise::new(7);
+            let kernel = Quad8::new(&NODES, quadrature);
+            let states = deformed_states(&kernel, &displacement(0.7 * size, &mut noise), &material);
+            let u = displacement(size, &mut noise);
+            let exact = force(&kernel, &u, &material, &states);
+            let yielded = (0..kernel.point_count()).any(|q| {
+                let (response, ..) = kernel.point_response(q, &u, &material, &states[q]).unwrap();
+                response.state.equivalent_plastic_strain > states[q].equivalent_plastic_strain
+            });
+            assert_eq!(yielded, plastic, "strain {size} does not test what it should");
+            let scale = exact.stiffness.iter().flatten().fold(0.0_f64, |m, k| m.max(k.abs()));
+            let h = 1e-7;
+            for j in 0..16 {
+                let (mut plus, mut minus) = (u, u);
+                plus[j / 2][j % 2] += h;
+                minus[j / 2][j % 2] -= h;
+                let up = force(&kernel, &plus, &material, &states);
+                let down = force(&kernel, &minus, &material, &states);
+                for i in 0..16 {
+                    let slope = (up.force[i] - down.force[i]) / (2.0 * h);
+                    let error = (exact.stiffness[i][j] - slope).abs() / scale;
+                    assert!(error < 2e-7, "{quadrature:?} {size} [{i}][{j}]: {error:.1e}");
+                    let skew = (exact.stiffness[i][j] - exact.stiffness[j][i]).abs() / scale;
+                    assert!(skew < 1e-14);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_rigid_motion_turns_the_stress_and_nothing_else() {
+    let material = aluminium();
+    let kernel = Quad8::new(&NODES, Quadrature::Reduced);
+    let mut noise = Noise::new(3);
+    let u = displacement(0.05, &mut noise);
+    let states = deformed_states(&kernel, &displacement(0.03, &mut noise), &material);
+    let (sin, cos) = 1.1_f64.sin_cos();
+    let mut turned = u;
+    for (t, x) in turned.iter_mut().zip(NODES) {
+        let now = [x[0] + t[0], x[1] + t[1]];
+        *t = [
+            cos * now[0] - sin * now[1] - x[0] + 3.0,
+            sin * now[0] + cos * now[1] - x[1] - 5.0,
+        ];
+    }
+    let (before, after) = (
+        force(&kernel, &u, &material, &states).force,
+        force(&kernel, &turned, &material, &states).force,
+    );
+    let size = before.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+    for a in 0..8 {
+        let expected = [
+            cos * before[2 * a] - sin * before[2 * a + 1],
+            sin * before[2 * a] + cos * before[2 * a + 1],
+        ];
+        for k in 0..2 {
+            assert!((after[2 * a + k] - expected[k]).abs() < 1e-12 * size);
+        }
+    }
+}
+
+#[test]
+fn elastic_forces_are_the_slope_of_the_stored_energy() {
+    let material = aluminium();
+    let kernel = Quad8::new(&NODES, Quadrature::Full);
+    let mut noise = Noise::new(5);
+    let u = displacement(1e-3, &mut noise);
+    let states = vec![PointState::VIRGIN; kernel.point_count()];
+    let energy = |u: &[[f64; 2]; 8]| -> f64 {
+        (0..kernel.point_count())
+            .map(|q| {
+                let (r, _, volume) = kernel.point_response(q, u, &material, &states[q]).unwrap();
+                volume * r.elastic_energy
+            })
+            .sum()
+    };
+    let exact = force(&kernel, &u, &material, &states).force;
+    let size = exact.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+    let h = 1e-6;
+    for j in 0..16 {
+        let (mut plus, mut minus) = (u, u);
+        plus[j / 2][j % 2] += h;
+        minus[j / 2][j % 2] -= h;
+        let slope = (energy(&plus) - energy(&minus)) / (2.0 * h);
+        assert!((exact[j] - slope).abs() < 1e-6 * size, "{} {}", exact[j], slope);
+    }
+}
+
+#[test]
+fn a_point_turned_over_is_refused() {
+    let material = aluminium();
+    let kernel = Quad8::new(&NODES, Quadrature::Reduced);
+    let mirrored = NODES.map(|[x, _]| [-2.0 * x, 0.0]);
+    let states = vec![PointState::VIRGIN; 4];
+    let mut out = ElementForce::ZERO;
+    let refused = kernel.internal_force(&mirrored, &material, &states, false, &mut out);
+    assert!(refused.unwrap_err().to_string().contains("turned over"));
+}
+
+/// Unknowns with plastic strain, contact on both tools, and open points.
+fn deformed_unknowns(problem: &Problem, seed: u64) -> (f64, Vec<f64>, Vec<f64>) {
+    let partition = partition(&problem.mesh, 1).unwrap();
+    let points = problem.contact_samples.len();
+    let numbering = Numbering::new(&problem.mesh, &partition, 1, points);
+    let mut noise = Noise::new(seed);
+    let size = numbering.row_count(0);
+    let mut global = vec![0.0; size];
+    let mut acceleration = vec![0.0; size];
+    for (node, &row) in numbering.node_row.iter().enumerate() {
+        let [x, y] = problem.mesh.nodes[node];
+        global[row] = 2e-3 * x * (y - 0.5) + 1e-4 * noise.next();
+        global[row + 1] = -0.3 + 2e-3 * x * x + 1e-4 * noise.next();
+        acceleration[row] = 1e-3 * noise.next();
+        acceleration[row + 1] = 1e-3 * noise.next();
+    }
+    for &row in &numbering.edge_row {
+        for k in 0..points {
+            global[row + 2 * k] = 1e-5 * (1.5 + noise.next());
+            global[row + 2 * k + 1] = 0.01 * (1.5 + noise.next());
+        }
+    }
+    (120.0, global, acceleration)
+}
+
+/// Residual and dense Jacobian summed over `ranks` parts, in the numbering of one rank.
+fn assemble(problem: &Problem, ranks: usize, t: f64, u: &[f64], a: &[f64], shift: f64) -> (Vec<f64>, Vec<f64>) {
+    let points = problem.contact_samples.len();
+    let one = Numbering::new(&problem.mesh, &vec![0; problem.mesh.elements.len()], 1, points);
+    let parts = partition(&problem.mesh, ranks).unwrap();
+    let many = Numbering::new(&problem.mesh, &parts, ranks, points);
+    let size = one.row_count(0);
+    let mut to_one = vec![0; size];
+    for (m, o) in many.node_row.iter().zip(&one.node_row) {
+        (to_one[*m], to_one[m + 1]) = (*o, o + 1);
+    }
+    for (m, o) in many.edge_row.iter().zip(&one.edge_row) {
+        (0..2 * points).for_each(|k| to_one[m + k] = o + k);
+    }
+    let (mut residual, mut jacobian) = (vec![0.0; size], vec![0.0; size * size]);
+    for rank in 0..ranks {
+        let local = LocalSystem::new(problem.clone(), &parts, &many, rank);
+        let rows: Vec<usize> = local.rows().iter().map(|&r| to_one[r as usize]).collect();
+        let gather = |x: &[f64]| rows.iter().map(|&r| x[r]).collect::<Vec<f64>>();
+        let mut out = vec![0.0; rows.len()];
+        local.residual(t, &gather(u), &gather(a), &mut out).unwrap();
+        rows.iter().zip(&out).for_each(|(&r, value)| residual[r] += value);
+        let (pattern_rows, columns) = local.jacobian_pattern();
+        let mut values = vec![0.0; local.jacobian_entries()];
+        local.jacobian(t, &gather(u), shift, &mut values).unwrap();
+        for ((r, c), value) in pattern_rows.iter().zip(&columns).zip(&values) {
+            if *r >= 0 {
+                jacobian[to_one[*r as usize] * size + to_one[*c as usize]] += value;
+            }
+        }
+    }
+    (residual, jacobian)
+}
+
+#[test]
+fn the_full_jacobian_agrees_with_central_differences() {
+    let problem = small_problem(6, 2);
+    let (t, u, a) = deformed_unknowns(&problem, 11);
+    // With an acceleration that follows the displacement the shift is its slope.
+    let shift = 2.5;
+    let follow = |u: &[f64]| -> Vec<f64> { u.iter().zip(&a).map(|(u, a)| a + shift * u).collect() };
+    let (_, jacobian) = assemble(&problem, 1, t, &u, &follow(&u), shift);
+    let size = u.len();
+    let mut worst = 0.0_f64;
+    for j in 0..size {
+        let h = 1e-7;
+        let (mut plus, mut minus) = (u.clone(), u.clone());
+        plus[j] += h;
+        minus[j] -= h;
+        let (up, _) = assemble(&problem, 1, t, &plus, &follow(&plus), shift);
+        let (down, _) = assemble(&problem, 1, t, &minus, &follow(&minus), shift);
+        for i in 0..size {
+            let slope = (up[i] - down[i]) / (2.0 * h);
+            worst = worst.max((jacobian[i * size + j] - slope).abs());
+        }
+    }
+    let scale = jacobian.iter().fold(0.0_f64, |m, k| m.max(k.abs()));
+    assert!(worst < 1e-6 * scale, "{worst:.2e} of {scale:.2e}");
+}
+
+#[test]
+fn assembly_does_not_depend_on_the_partition() {
+    let problem = small_problem(12, 3);
+    let (t, u, a) = deformed_unknowns(&problem, 13);
+    let (residual, jacobian) = assemble(&problem, 1, t, &u, &a, 2.5);
+    for ranks in [2, 3, 4] {
+        let (other_residual, other_jacobian) = assemble(&problem, ranks, t, &u, &a, 2.5);
+        let differ = |x: &[f64], y: &[f64]| {
+            let size = x.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+            x.iter().zip(y).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs())) / size
+        };
+        assert!(differ(&residual, &other_residual) < 1e-13);
+        assert!(differ(&jacobian, &other_jacobian) < 1e-13);
+    }
+}
