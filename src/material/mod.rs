@@ -1,9 +1,10 @@
 //! In: a deformation gradient and the state of a point. Out: Kirchhoff stress, consistent tangent,
 //! stored energy and the new state.
-//! Never: elements, files, PETSc or MPI.
+//! Never: meshes, unknowns, PETSc or MPI; of files only the hardening table is read.
 
-mod hardening;
+pub mod hardening;
+mod hardening_table;
 mod von_mises;
 
-pub use hardening::{Hardening, HardeningError, PlasticStep};
+pub use hardening::Hardening;
 pub use von_mises::{PointState, Response, TurnedOver, VonMises};

@@ -1,0 +1,181 @@
+//! What can be wrong with a case, each as one sentence: what, where, what is allowed, what to do.
+
+use std::fmt;
+
+use crate::material::hardening::HardeningError;
+
+/// Why a case is refused. The text is one sentence for the person who wrote the options.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CaseError {
+    /// An option that needs a value was given without one.
+    #[error("option -{option} has no value: give {wanted} (default {default})")]
+    NoValue {
+        /// Name without the dash.
+        option: &'static str,
+        /// Kind, unit and range in words.
+        wanted: String,
+        /// Default with its unit.
+        default: String,
+    },
+    /// The text of an option is not of its kind, or outside its range.
+    #[error("option -{option} {given}: {problem}; give {wanted} (default {default})")]
+    BadValue {
+        /// Name without the dash.
+        option: &'static str,
+        /// The text that was given.
+        given: String,
+        /// What is wrong with it.
+        problem: &'static str,
+        /// Kind, unit and range in words.
+        wanted: String,
+        /// Default with its unit.
+        default: String,
+    },
+    /// An option nobody reads and that is not PETSc's.
+    #[error("option -{given} is unknown: the nearest one is {nearest}{hint}")]
+    UnknownOption {
+        /// The name as given, without the dash.
+        given: String,
+        /// The nearest option of ours with unit, range and default.
+        nearest: String,
+        /// A further advice, or nothing.
+        hint: &'static str,
+    },
+    /// A word of the command line that is neither an option nor the value of one.
+    #[error(
+        "argument '{argument}' is neither an option nor the value of one: options are written -name value, see -help"
+    )]
+    StrayArgument {
+        /// The word.
+        argument: String,
+    },
+    /// `-options_file` without a path.
+    #[error(
+        "option -options_file has no value: give the path of an option file, for example inputs/ssnp155.opts"
+    )]
+    OptionsFileWithoutPath,
+    /// `-options_file` with a path that cannot be read.
+    #[error(
+        "option -options_file {path}: the file cannot be read ({reason}); give the path of a readable text file"
+    )]
+    OptionsFileUnreadable {
+        /// The path as given.
+        path: String,
+        /// The operating system's reason.
+        reason: String,
+    },
+    /// The hardening table is refused; what it says names the file and the line.
+    #[error("option -hardening_file: {0}")]
+    Hardening(#[from] HardeningError),
+    /// The sheet does not fit between the vertical side of the punch and the die. Lengths in mm.
+    #[error(
+        "the sheet does not fit between punch and die: -die_radius {die_radius} mm less -punch_radius {punch_radius} mm \
+         leaves {clearance} mm and -sheet_thickness is {thickness} mm; make the clearance greater than the thickness"
+    )]
+    NoClearance {
+        /// Radius of the cavity.
+        die_radius: f64,
+        /// Radius of the punch.
+        punch_radius: f64,
+        /// What the radii leave.
+        clearance: f64,
+        /// Thickness of the sheet.
+        thickness: f64,
+    },
+    /// The punch would squeeze the sheet on the bottom of the cavity. Lengths in mm.
+    #[error(
+        "-stroke {stroke} mm squeezes the sheet on the bottom of the die, which is {depth} mm below the die's flat \
+         (-die_radius + -die_shoulder_radius); give a stroke below {depth} mm or a deeper die"
+    )]
+    StrokeTooDeep {
+        /// Stroke of the punch.
+        stroke: f64,
+        /// Depth of the cavity.
+        depth: f64,
+    },
+    /// The sheet does not reach the flat of the die. Lengths in mm.
+    #[error(
+        "the sheet falls into the die: half of -sheet_length is {half_length} mm and the die's flat begins at \
+         {die_edge} mm (-die_radius + -die_shoulder_radius); give a -sheet_length above {least_length} mm"
+    )]
+    SheetTooShort {
+        /// Half length of the sheet.
+        half_length: f64,
+        /// Where the flat begins.
+        die_edge: f64,
+        /// Least whole length.
+        least_length: f64,
+    },
+    /// The end of the sheet would be drawn over the shoulder. Lengths in mm.
+    #[error(
+        "the sheet slips off the die's shoulder: at -stroke {stroke} mm the way round the punch to the shoulder is \
+         {path:.3} mm and half of -sheet_length is {half_length} mm; give a -sheet_length above {least_length:.3} mm \
+         or a shorter stroke"
+    )]
+    SheetSlipsOff {
+        /// Stroke of the punch.
+        stroke: f64,
+        /// Way from the middle of the sheet round the punch to the shoulder.
+        path: f64,
+        /// Half length of the sheet.
+        half_length: f64,
+        /// Least whole length.
+        least_length: f64,
+    },
+    /// The bounds of the time step do not enclose the first step. Times in ms.
+    #[error(
+        "the time steps contradict each other: -dt_min {dt_min} ms <= -dt_initial {dt_initial} ms <= -dt_max {dt_max} ms \
+         does not hold; change one of the three"
+    )]
+    StepOrder {
+        /// Least step.
+        dt_min: f64,
+        /// First step.
+        dt_initial: f64,
+        /// Greatest step.
+        dt_max: f64,
+    },
+    /// More MPI ranks than elements.
+    #[error(
+        "{ranks} MPI ranks for {elements} elements (-sheet_nx {nx} times -sheet_ny {ny}): every rank needs an element; \
+         start at most {elements} ranks or refine the mesh"
+    )]
+    TooManyRanks {
+        /// Ranks of the run.
+        ranks: usize,
+        /// Elements of the sheet.
+        elements: usize,
+        /// Elements along the half length.
+        nx: usize,
+        /// Elements through the thickness.
+        ny: usize,
+    },
+    /// The table of reference values is malformed.
+    #[error("reference values, line {line}: {problem}")]
+    ReferenceValues {
+        /// Line of the file, from 1.
+        line: u64,
+        /// What is wrong, and what is expected.
+        problem: String,
+    },
+}
+
+/// Something to tell the person that does not stop the run.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Warning {
+    /// Name of the option without the dash.
+    pub option: String,
+    /// Its value, if it has one.
+    pub value: Option<String>,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "option -{}", self.option)?;
+        if let Some(value) = &self.value {
+            write!(f, " {value}")?;
+        }
+        f.write_str(" has no effect: PETSc did not read it; check its spelling and whether the chosen solver has it")
+    }
+}

@@ -1,0 +1,28 @@
+//! In: what a person says, as options by name (command line, option file) and the tables they point to.
+//! Out: a checked [`Case`], help and documentation of every option, and errors of one sentence each.
+//! Never: PETSc, MPI, printing; a case that is handed out can be built and run.
+//!
+//! An option of ours is declared once, in `table.rs`; help, documentation, checks and errors follow from there.
+
+mod arguments;
+mod error;
+mod geometry;
+mod help;
+mod kind;
+mod model;
+mod option;
+mod provenance;
+mod reference;
+mod table;
+mod unused;
+
+pub use arguments::{check_arguments, check_options_file};
+pub use error::{CaseError, Warning};
+pub use geometry::check_ranks;
+pub use help::{help_text, options_markdown};
+pub use model::{
+    Case, Discretisation, Dynamics, Loading, Material, OptionSource, Output, Sheet, Stepping, Tools,
+};
+pub use provenance::Difference;
+pub use reference::{Instant, ReferenceValue, Tolerance, reference_values};
+pub use unused::check_unused;

@@ -1,0 +1,284 @@
+//! The case: the model a person describes, as plain numbers. Units are mm, N, MPa, g and ms.
+
+use std::collections::BTreeMap;
+
+use super::error::CaseError;
+use super::{geometry, table};
+use crate::material::hardening::Hardening;
+
+/// Where the texts of options come from: PETSc's option database, or a map in tests.
+pub trait OptionSource {
+    /// The text given for the option (its name without the dash): `None` when it was not given, an empty text when it
+    /// was given without a value.
+    fn get(&self, name: &str) -> Option<String>;
+}
+
+impl OptionSource for BTreeMap<String, String> {
+    fn get(&self, name: &str) -> Option<String> {
+        BTreeMap::get(self, name).cloned()
+    }
+}
+
+/// Everything a run needs to know. Made by [`Case::read`], which refuses what cannot work.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Case {
+    /// The sheet.
+    pub sheet: Sheet,
+    /// The rigid tools.
+    pub tools: Tools,
+    /// What the punch does, and whether inertia counts.
+    pub loading: Loading,
+    /// What the sheet is made of.
+    pub material: Material,
+    /// Mesh, quadrature and contact points.
+    pub discretisation: Discretisation,
+    /// Time steps and Newton's method.
+    pub stepping: Stepping,
+    /// What is written where.
+    pub output: Output,
+}
+
+/// The sheet: x in [0, length / 2], y in [0, thickness]; x = 0 is the plane of symmetry.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sheet {
+    /// Length of the whole sheet, mm.
+    pub length: f64,
+    /// Thickness, mm.
+    pub thickness: f64,
+    /// Width of the sheet, mm.
+    pub width: f64,
+}
+
+impl Sheet {
+    /// Length of the half that is modelled, mm.
+    pub fn half_length(&self) -> f64 {
+        0.5 * self.length
+    }
+
+    /// Force of the whole sheet (N) per force of the half model for one mm of width (N/mm); mm.
+    pub fn force_factor(&self) -> f64 {
+        2.0 * self.width
+    }
+}
+
+/// The rigid tools. The die's flat is y = 0 for x >= `die_edge`, the shoulder's centre is (`die_edge`, -shoulder radius),
+/// the cavity's centre (0, -shoulder radius); the punch's lowest point is first at (0, thickness).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tools {
+    /// Radius of the punch, mm.
+    pub punch_radius: f64,
+    /// Radius of the cavity, mm.
+    pub die_radius: f64,
+    /// Radius of the shoulder, mm.
+    pub die_shoulder_radius: f64,
+}
+
+impl Tools {
+    /// Where the flat of the die begins, mm; also how far the bottom of the cavity lies below the flat.
+    pub fn die_edge(&self) -> f64 {
+        self.die_radius + self.die_shoulder_radius
+    }
+}
+
+/// Whether the inertia of the sheet counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dynamics {
+    /// Slow dynamics: the mass stabilises what would snap.
+    Slow,
+    /// Static.
+    None,
+}
+
+/// What the punch does: down by the stroke in `time_load`, then back by a share of it in `time_unload`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loading {
+    /// Way down, mm.
+    pub stroke: f64,
+    /// Share of the stroke by which the punch goes back, 0 to 1.
+    pub unload_fraction: f64,
+    /// Time for the way down, ms.
+    pub time_load: f64,
+    /// Time for the way back, ms.
+    pub time_unload: f64,
+    /// Whether inertia counts.
+    pub dynamics: Dynamics,
+}
+
+impl Loading {
+    /// Time at the end of the run, ms: there is no unloading when the punch does not go back.
+    pub fn end_time(&self) -> f64 {
+        if self.unload_fraction > 0.0 {
+            self.time_load + self.time_unload
+        } else {
+            self.time_load
+        }
+    }
+
+    /// How far below its first position the punch is (mm, positive downwards) at a time (ms); constant outside the run.
+    pub fn punch_travel(&self, time: f64) -> f64 {
+        if time <= self.time_load {
+            self.stroke * (time / self.time_load).max(0.0)
+        } else {
+            let back = ((time - self.time_load) / self.time_unload).min(1.0);
+            self.stroke * (1.0 - self.unload_fraction * back)
+        }
+    }
+}
+
+/// Elasticity, density and hardening of the sheet.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// Young's modulus, MPa.
+    pub young_modulus: f64,
+    /// Poisson's ratio.
+    pub poisson_ratio: f64,
+    /// Density, g/mm3.
+    pub density: f64,
+    /// Path of the hardening table, or the word `benchmark` for the one in the program.
+    pub hardening_file: String,
+    /// Yield stress (MPa) against equivalent plastic strain.
+    pub hardening: Hardening,
+}
+
+/// Mesh, quadrature and contact points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Discretisation {
+    /// Elements along half the sheet.
+    pub nx: usize,
+    /// Elements through the thickness.
+    pub ny: usize,
+    /// Gauss points per direction, 2 or 3.
+    pub quadrature: usize,
+    /// Contact points on each element edge of the sheet's surfaces.
+    pub contact_points_per_edge: usize,
+    /// Gap the tools' surface gives per contact pressure, mm/MPa.
+    pub contact_compliance: f64,
+}
+
+impl Discretisation {
+    /// Number of elements of the sheet.
+    pub fn elements(&self) -> usize {
+        self.nx * self.ny
+    }
+}
+
+/// Time steps and Newton's method.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stepping {
+    /// First time step, ms.
+    pub dt_initial: f64,
+    /// Least time step, ms.
+    pub dt_min: f64,
+    /// Greatest time step, ms.
+    pub dt_max: f64,
+    /// Whether a solve starts from extrapolated displacements.
+    pub extrapolate: bool,
+    /// Absolute tolerance on the norm of the scaled residual, mm.
+    pub newton_tolerance: f64,
+    /// Most Newton iterations in one solve.
+    pub newton_max_iterations: usize,
+}
+
+/// What is written where.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Output {
+    /// Directory of the results.
+    pub dir: String,
+    /// Fields are saved every so many accepted steps; 0: at the ends of loading and unloading only.
+    pub every: usize,
+}
+
+impl Case {
+    /// The case the options describe; options that are not given have their defaults, which are the reference case.
+    ///
+    /// # Errors
+    /// The first option that is malformed or out of range, a hardening table that cannot be used, or a combination
+    /// that cannot work.
+    pub fn read(options: &dyn OptionSource) -> Result<Case, CaseError> {
+        let case = Case {
+            sheet: Sheet {
+                length: table::SHEET_LENGTH.read(options)?,
+                thickness: table::SHEET_THICKNESS.read(options)?,
+                width: table::SHEET_WIDTH.read(options)?,
+            },
+            tools: Tools {
+                punch_radius: table::PUNCH_RADIUS.read(options)?,
+                die_radius: table::DIE_RADIUS.read(options)?,
+                die_shoulder_radius: table::DIE_SHOULDER_RADIUS.read(options)?,
+            },
+            loading: Loading {
+                stroke: table::STROKE.read(options)?,
+                unload_fraction: table::UNLOAD_FRACTION.read(options)?,
+                time_load: table::TIME_LOAD.read(options)?,
+                time_unload: table::TIME_UNLOAD.read(options)?,
+                dynamics: table::DYNAMICS.read(options)?,
+            },
+            material: read_material(options)?,
+            discretisation: Discretisation {
+                nx: table::SHEET_NX.read(options)?,
+                ny: table::SHEET_NY.read(options)?,
+                quadrature: table::QUADRATURE.read(options)?,
+                contact_points_per_edge: table::CONTACT_POINTS_PER_EDGE.read(options)?,
+                contact_compliance: table::CONTACT_COMPLIANCE.read(options)?,
+            },
+            stepping: Stepping {
+                dt_initial: table::DT_INITIAL.read(options)?,
+                dt_min: table::DT_MIN.read(options)?,
+                dt_max: table::DT_MAX.read(options)?,
+                extrapolate: table::EXTRAPOLATE.read(options)?,
+                newton_tolerance: table::NEWTON_TOLERANCE.read(options)?,
+                newton_max_iterations: table::NEWTON_MAX_ITERATIONS.read(options)?,
+            },
+            output: Output {
+                dir: table::OUTPUT_DIR.read(options)?,
+                every: table::OUTPUT_EVERY.read(options)?,
+            },
+        };
+        geometry::check(&case)?;
+        check_step_order(&case.stepping)?;
+        Ok(case)
+    }
+
+    /// The frictionless reference case: every option at its default.
+    ///
+    /// # Errors
+    /// None unless the program's own table is broken, which the tests exclude.
+    pub fn reference() -> Result<Case, CaseError> {
+        Case::read(&BTreeMap::new())
+    }
+}
+
+fn read_material(options: &dyn OptionSource) -> Result<Material, CaseError> {
+    let young_modulus = table::YOUNG_MODULUS.read(options)?;
+    let hardening_file = table::HARDENING_FILE.read(options)?;
+    let hardening = if hardening_file == table::BENCHMARK_TABLE {
+        Hardening::benchmark(young_modulus)?
+    } else {
+        Hardening::from_file(std::path::Path::new(&hardening_file), young_modulus)?
+    };
+    Ok(Material {
+        young_modulus,
+        poisson_ratio: table::POISSON_RATIO.read(options)?,
+        density: table::DENSITY.read(options)?,
+        hardening_file,
+        hardening,
+    })
+}
+
+fn check_step_order(stepping: &Stepping) -> Result<(), CaseError> {
+    let Stepping {
+        dt_min,
+        dt_initial,
+        dt_max,
+        ..
+    } = *stepping;
+    if dt_min <= dt_initial && dt_initial <= dt_max {
+        Ok(())
+    } else {
+        Err(CaseError::StepOrder {
+            dt_min,
+            dt_initial,
+            dt_max,
+        })
+    }
+}

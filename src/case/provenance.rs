@@ -1,0 +1,55 @@
+//! What a case says about itself: all effective options, and how far it is from the reference case.
+
+use super::error::CaseError;
+use super::model::Case;
+use super::table::{self, TABLE};
+
+/// An option whose value is not that of the reference case.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Difference {
+    /// Name without the dash.
+    pub option: &'static str,
+    /// Value of this case.
+    pub value: String,
+    /// Value of the reference case.
+    pub reference: String,
+}
+
+impl Case {
+    /// Every option with the value in effect, in the order of the table. Read again, they give the same case.
+    pub fn options(&self) -> Vec<(&'static str, String)> {
+        TABLE
+            .iter()
+            .map(|option| (option.name(), option.shown(self)))
+            .collect()
+    }
+
+    /// The options that make physics or mesh differ from the reference case; time steps, tolerances and output may differ
+    /// freely. A hardening table counts by its curve, not by its path.
+    ///
+    /// # Errors
+    /// None unless the program's own table is broken, which the tests exclude.
+    pub fn differences_from_reference(&self) -> Result<Vec<Difference>, CaseError> {
+        let reference = Case::reference()?;
+        let same_curve = self.material.hardening == reference.material.hardening;
+        let differences = TABLE
+            .iter()
+            .filter(|option| option.group().defines_model())
+            .filter(|option| option.name() != table::HARDENING_FILE.name || !same_curve)
+            .map(|option| Difference {
+                option: option.name(),
+                value: option.shown(self),
+                reference: option.shown(&reference),
+            })
+            .filter(|difference| difference.value != difference.reference);
+        Ok(differences.collect())
+    }
+
+    /// Whether physics and mesh are those of the reference case, so that the reference values apply.
+    ///
+    /// # Errors
+    /// As [`Case::differences_from_reference`].
+    pub fn is_reference(&self) -> Result<bool, CaseError> {
+        Ok(self.differences_from_reference()?.is_empty())
+    }
+}

@@ -1,0 +1,209 @@
+//! The reference values a run is compared with, from inputs/reference/values.csv, which is part of the program.
+
+use super::error::CaseError;
+
+const VALUES: &str = include_str!("../../inputs/reference/values.csv");
+const HEADER: [&str; 7] = [
+    "id",
+    "quantity",
+    "unit",
+    "value",
+    "tolerance",
+    "when",
+    "source",
+];
+
+/// How far a result may be from the reference value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Tolerance {
+    /// In the unit of the value.
+    Absolute(f64),
+    /// As a share of the value's size.
+    Relative(f64),
+}
+
+/// When in the run a value is taken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Instant {
+    /// While the punch goes down, when it has travelled so far, mm.
+    Travel(f64),
+    /// At full stroke.
+    FullStroke,
+    /// At the end of unloading.
+    EndOfUnloading,
+}
+
+/// A value from elsewhere, with its source.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReferenceValue {
+    /// Short name by which a result is matched with it.
+    pub id: String,
+    /// What it is, in words.
+    pub quantity: String,
+    /// Unit of value and absolute tolerance.
+    pub unit: String,
+    /// The value.
+    pub value: f64,
+    /// How far a result may be from it.
+    pub tolerance: Tolerance,
+    /// When it is taken.
+    pub when: Instant,
+    /// Who says so.
+    pub source: String,
+}
+
+impl ReferenceValue {
+    /// The tolerance in the unit of the value.
+    pub fn allowed_deviation(&self) -> f64 {
+        match self.tolerance {
+            Tolerance::Absolute(deviation) => deviation,
+            Tolerance::Relative(share) => share * self.value.abs(),
+        }
+    }
+
+    /// Whether a result agrees within the tolerance; NaN never does.
+    pub fn agrees(&self, result: f64) -> bool {
+        // A result on the very edge must not fail by rounding.
+        (result - self.value).abs() <= self.allowed_deviation() * (1.0 + 1e-12)
+    }
+}
+
+/// The reference values of the frictionless reference case.
+///
+/// # Errors
+/// None unless the program's own table is broken, which the tests exclude.
+pub fn reference_values() -> Result<Vec<ReferenceValue>, CaseError> {
+    parse(VALUES)
+}
+
+fn parse(text: &str) -> Result<Vec<ReferenceValue>, CaseError> {
+    let mut reader = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .has_headers(false)
+        .flexible(true)
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes());
+    let mut values: Vec<ReferenceValue> = Vec::new();
+    let mut header_seen = false;
+    for record in reader.records() {
+        let record = record.map_err(|error| CaseError::ReferenceValues {
+            line: error.position().map_or(0, csv::Position::line),
+            problem: error.to_string(),
+        })?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let refuse = |problem| CaseError::ReferenceValues { line, problem };
+        if !header_seen {
+            header_seen = true;
+            if record != HEADER[..] {
+                return Err(refuse(format!("the header is not {}", HEADER.join(","))));
+            }
+            continue;
+        }
+        let value = parse_row(&record).map_err(refuse)?;
+        if values.iter().any(|known| known.id == value.id) {
+            return Err(refuse(format!("the id {} is there twice", value.id)));
+        }
+        values.push(value);
+    }
+    if header_seen {
+        Ok(values)
+    } else {
+        Err(CaseError::ReferenceValues {
+            line: 1,
+            problem: "no header".to_owned(),
+        })
+    }
+}
+
+fn parse_row(record: &csv::StringRecord) -> Result<ReferenceValue, String> {
+    let fields: Vec<&str> = record.iter().collect();
+    let [id, quantity, unit, value, tolerance, when, source] = fields[..] else {
+        return Err(format!(
+            "{} columns instead of {}",
+            fields.len(),
+            HEADER.len()
+        ));
+    };
+    Ok(ReferenceValue {
+        id: id.to_owned(),
+        quantity: quantity.to_owned(),
+        unit: unit.to_owned(),
+        value: number(value)?,
+        tolerance: match tolerance.strip_suffix('%') {
+            Some(percent) => Tolerance::Relative(positive(percent.trim())? / 100.0),
+            None => Tolerance::Absolute(positive(tolerance)?),
+        },
+        when: match when {
+            "full stroke" => Instant::FullStroke,
+            "end of unloading" => Instant::EndOfUnloading,
+            _ => match when.strip_prefix("d =") {
+                Some(travel) => Instant::Travel(positive(travel.trim())?),
+                None => {
+                    return Err(format!(
+                        "'{when}' is none of: d = number, full stroke, end of unloading"
+                    ));
+                }
+            },
+        },
+        source: source.to_owned(),
+    })
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    text.parse::<f64>()
+        .ok()
+        .filter(|value| value.is_finite())
+        .ok_or_else(|| format!("'{text}' is not a finite number"))
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    number(text).and_then(|value| {
+        if value > 0.0 {
+            Ok(value)
+        } else {
+            Err(format!("'{text}' is not positive"))
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::{any, proptest};
+
+    fn refusal(rows: &str) -> String {
+        parse(&format!("# comment\n{}\n{rows}", HEADER.join(",")))
+            .unwrap_err()
+            .to_string()
+    }
+
+    #[test]
+    fn malformed_tables_are_refused_with_the_line() {
+        assert_eq!(
+            refusal("a,b,N,1,1"),
+            "reference values, line 3: 5 columns instead of 7"
+        );
+        assert!(refusal("a,b,N,x,1,full stroke,s").contains("line 3: 'x' is not a finite number"));
+        assert!(refusal("a,b,N,1,-1,full stroke,s").contains("'-1' is not positive"));
+        assert!(refusal("a,b,N,1,1,noon,s").contains("'noon' is none of"));
+        assert!(
+            refusal("a,b,N,1,1,d = 2,s\na,b,N,1,1,d = 2,s")
+                .contains("line 4: the id a is there twice")
+        );
+        assert!(parse("").is_err());
+        assert!(
+            parse("id,value\n")
+                .unwrap_err()
+                .to_string()
+                .contains("header")
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn any_text_is_read_or_refused(text in any::<String>()) {
+            let _ = parse(&text);
+            let _ = parse(&format!("{}\n{text}", HEADER.join(",")));
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! The option table: every option of ours, declared once.
+//!
+//! To add an option: an entry here, a field in `model.rs` with the line that reads it, and
+//! `UPDATE_DOCS=1 cargo test --test case_docs` for docs/options.md.
+
+use std::ops::Bound;
+
+use super::kind::{Choice, Flag, Integer, Path, Real};
+use super::model::Dynamics;
+use super::option::{Described, Group, Opt};
+
+/// The value of -hardening_file that means the table compiled into the program.
+pub(crate) const BENCHMARK_TABLE: &str = "benchmark";
+
+macro_rules! option_table {
+    ($($option:ident: $kind:ty { $($field:tt)* })*) => {
+        $(pub(crate) static $option: Opt<$kind> = Opt { $($field)* };)*
+        /// Every option, in the order of the listings.
+        pub(crate) static TABLE: &[&dyn Described] = &[$(&$option),*];
+    };
+}
+
+option_table! {
+    SHEET_LENGTH: Real {
+        name: "sheet_length", unit: "mm", default: "120", group: Group::Sheet, kind: Real::positive(1e5),
+        meaning: "Length of the whole sheet; by symmetry half of it is modelled.",
+        value: |case| case.sheet.length,
+    }
+    SHEET_THICKNESS: Real {
+        name: "sheet_thickness", unit: "mm", default: "1", group: Group::Sheet, kind: Real::positive(1e5),
+        meaning: "Thickness of the sheet.",
+        value: |case| case.sheet.thickness,
+    }
+    SHEET_WIDTH: Real {
+        name: "sheet_width", unit: "mm", default: "30", group: Group::Sheet, kind: Real::positive(1e5),
+        meaning: "Width of the sheet; the reported force is that of the whole sheet of this width.",
+        value: |case| case.sheet.width,
+    }
+    PUNCH_RADIUS: Real {
+        name: "punch_radius", unit: "mm", default: "23.5", group: Group::Tools, kind: Real::positive(1e5),
+        meaning: "Radius of the punch; its sides are vertical above the centre of the arc.",
+        value: |case| case.tools.punch_radius,
+    }
+    DIE_RADIUS: Real {
+        name: "die_radius", unit: "mm", default: "25", group: Group::Tools, kind: Real::positive(1e5),
+        meaning: "Radius of the die's cavity.",
+        value: |case| case.tools.die_radius,
+    }
+    DIE_SHOULDER_RADIUS: Real {
+        name: "die_shoulder_radius", unit: "mm", default: "4", group: Group::Tools, kind: Real::positive(1e5),
+        meaning: "Radius of the shoulder between the die's cavity and its flat.",
+        value: |case| case.tools.die_shoulder_radius,
+    }
+    STROKE: Real {
+        name: "stroke", unit: "mm", default: "28.5", group: Group::Loading, kind: Real::positive(1e5),
+        meaning: "Way of the punch from its first touch of the sheet to the lowest point.",
+        value: |case| case.loading.stroke,
+    }
+    UNLOAD_FRACTION: Real {
+        name: "unload_fraction", unit: "", default: "0.1", group: Group::Loading,
+        kind: Real(Bound::Included(0.0), Bound::Included(1.0)),
+        meaning: "Share of the stroke by which the punch goes back; with 0 the run ends at full stroke.",
+        value: |case| case.loading.unload_fraction,
+    }
+    TIME_LOAD: Real {
+        name: "time_load", unit: "ms", default: "900", group: Group::Loading, kind: Real::positive(1e9),
+        meaning: "Time in which the punch goes down, at constant speed.",
+        value: |case| case.loading.time_load,
+    }
+    TIME_UNLOAD: Real {
+        name: "time_unload", unit: "ms", default: "100", group: Group::Loading, kind: Real::positive(1e9),
+        meaning: "Time in which the punch goes back, at constant speed.",
+        value: |case| case.loading.time_unload,
+    }
+    DYNAMICS: Choice<Dynamics> {
+        name: "dynamics", unit: "", default: "slow", group: Group::Loading,
+        kind: Choice(&[("slow", Dynamics::Slow), ("none", Dynamics::None)]),
+        meaning: "With the inertia of the sheet (slow), or static (none).",
+        value: |case| case.loading.dynamics,
+    }
+    YOUNG_MODULUS: Real {
+        name: "young_modulus", unit: "MPa", default: "70500", group: Group::Material, kind: Real::positive(1e8),
+        meaning: "Young's modulus; the first point of the hardening table must lie on this elastic line.",
+        value: |case| case.material.young_modulus,
+    }
+    POISSON_RATIO: Real {
+        name: "poisson_ratio", unit: "", default: "0.342", group: Group::Material,
+        kind: Real(Bound::Included(0.0), Bound::Excluded(0.5)),
+        meaning: "Poisson's ratio.",
+        value: |case| case.material.poisson_ratio,
+    }
+    DENSITY: Real {
+        name: "density", unit: "g/mm3", default: "2.7e-3", group: Group::Material, kind: Real::positive(1e3),
+        meaning: "Density; used with -dynamics slow.",
+        value: |case| case.material.density,
+    }
+    HARDENING_FILE: Path {
+        name: "hardening_file", unit: "", default: BENCHMARK_TABLE, group: Group::Material, kind: Path,
+        meaning: "Table of total logarithmic strain and true stress in MPa; the word benchmark means the benchmark's own \
+                  table, which is part of the program.",
+        value: |case| case.material.hardening_file.clone(),
+    }
+    SHEET_NX: Integer {
+        name: "sheet_nx", unit: "", default: "170", group: Group::Discretisation, kind: Integer(1, 10_000),
+        meaning: "Elements along half the sheet.",
+        value: |case| case.discretisation.nx,
+    }
+    SHEET_NY: Integer {
+        name: "sheet_ny", unit: "", default: "5", group: Group::Discretisation, kind: Integer(1, 500),
+        meaning: "Elements through the thickness.",
+        value: |case| case.discretisation.ny,
+    }
+    QUADRATURE: Choice<usize> {
+        name: "quadrature", unit: "", default: "2", group: Group::Discretisation, kind: Choice(&[("2", 2), ("3", 3)]),
+        meaning: "Gauss points per direction in an element; 2 is reduced integration of the quadratic element.",
+        value: |case| case.discretisation.quadrature,
+    }
+    CONTACT_POINTS_PER_EDGE: Integer {
+        name: "contact_points_per_edge", unit: "", default: "6", group: Group::Discretisation, kind: Integer(1, 24),
+        meaning: "Contact points on each element edge of the sheet's surfaces; too few make the force a saw-tooth.",
+        value: |case| case.discretisation.contact_points_per_edge,
+    }
+    CONTACT_COMPLIANCE: Real {
+        name: "contact_compliance", unit: "mm/MPa", default: "5e-5", group: Group::Discretisation,
+        kind: Real::positive(1.0),
+        meaning: "How far the tools' surface gives way per contact pressure; 5e-5 is a stiffness of 2e4 MPa/mm.",
+        value: |case| case.discretisation.contact_compliance,
+    }
+    DT_INITIAL: Real {
+        name: "dt_initial", unit: "ms", default: "1", group: Group::Stepping, kind: Real::positive(1e9),
+        meaning: "First time step, and the first one after the punch turns.",
+        value: |case| case.stepping.dt_initial,
+    }
+    DT_MIN: Real {
+        name: "dt_min", unit: "ms", default: "1e-6", group: Group::Stepping, kind: Real::positive(1e9),
+        meaning: "The run gives up when a step would have to be shorter than this.",
+        value: |case| case.stepping.dt_min,
+    }
+    DT_MAX: Real {
+        name: "dt_max", unit: "ms", default: "9", group: Group::Stepping, kind: Real::positive(1e9),
+        meaning: "Longest time step.",
+        value: |case| case.stepping.dt_max,
+    }
+    EXTRAPOLATE: Flag {
+        name: "extrapolate", unit: "", default: "true", group: Group::Stepping, kind: Flag,
+        meaning: "Start each Newton solve from the displacements extrapolated from the last step.",
+        value: |case| case.stepping.extrapolate,
+    }
+    NEWTON_TOLERANCE: Real {
+        name: "newton_tolerance", unit: "mm", default: "1e-9", group: Group::Stepping, kind: Real::positive(1e-3),
+        meaning: "A solve has converged when the norm of the scaled residual (forces divided by Young's modulus) is below.",
+        value: |case| case.stepping.newton_tolerance,
+    }
+    NEWTON_MAX_ITERATIONS: Integer {
+        name: "newton_max_iterations", unit: "", default: "30", group: Group::Stepping, kind: Integer(1, 1000),
+        meaning: "A solve that needs more iterations is refused and done again with a shorter step.",
+        value: |case| case.stepping.newton_max_iterations,
+    }
+    OUTPUT_DIR: Path {
+        name: "output_dir", unit: "", default: "results", group: Group::Output, kind: Path,
+        meaning: "Directory for everything the run writes; made if it is missing.",
+        value: |case| case.output.dir.clone(),
+    }
+    OUTPUT_EVERY: Integer {
+        name: "output_every", unit: "", default: "1", group: Group::Output, kind: Integer(0, 1_000_000),
+        meaning: "Fields are saved every so many accepted steps; 0 saves them at the ends of loading and unloading only.",
+        value: |case| case.output.every,
+    }
+}

@@ -1,0 +1,219 @@
+//! Isotropic hardening: the yield stress as a piecewise linear function of the equivalent plastic strain.
+
+use std::path::Path;
+
+use super::hardening_table::{self, Row};
+
+/// The benchmark's traction curve (SSNP155 document, section 1.2).
+const BENCHMARK: &str = include_str!("../../inputs/reference/hardening.csv");
+
+/// Why a hardening table is refused, as one sentence.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum HardeningError {
+    /// The file cannot be read as text.
+    #[error(
+        "hardening table {origin} cannot be read ({reason}); give the path of a text file with the columns strain,stress"
+    )]
+    Unreadable {
+        /// The path.
+        origin: String,
+        /// Why.
+        reason: String,
+    },
+    /// The table, or a line of it, cannot be used.
+    #[error("hardening table {origin}{}: {problem}", line.map(|line| format!(", line {line}")).unwrap_or_default())]
+    Malformed {
+        /// Where the table comes from.
+        origin: String,
+        /// Line of the file from 1, if one is to blame.
+        line: Option<usize>,
+        /// What is wrong, and what is expected.
+        problem: String,
+    },
+}
+
+/// The straight piece that begins at plastic strain `start`; it ends where the next one begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Segment {
+    start: f64,
+    /// Yield stress at the start, MPa.
+    stress: f64,
+    /// MPa per plastic strain, not negative.
+    slope: f64,
+    /// Plastic work from zero to the start, MPa.
+    work: f64,
+}
+
+/// Yield stress (MPa) against equivalent plastic strain p: linear between the points, beyond the last with the last slope.
+/// It never softens. Nothing is allocated after construction.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hardening {
+    /// At least one; the first begins at p = 0.
+    segments: Vec<Segment>,
+}
+
+/// The answer of [`Hardening::return_map`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlasticStep {
+    /// Increment of the equivalent plastic strain; 0 for an elastic step.
+    pub dp: f64,
+    /// Yield stress after the step, MPa.
+    pub yield_stress: f64,
+    /// Slope of the hardening curve after the step, MPa.
+    pub slope: f64,
+}
+
+impl Hardening {
+    /// The benchmark's table, which is part of the program. `young`: Young's modulus, MPa.
+    ///
+    /// # Errors
+    /// The table's first point is not on the elastic line of this modulus.
+    pub fn benchmark(young: f64) -> Result<Self, HardeningError> {
+        Self::from_csv(BENCHMARK, "of the benchmark", young)
+    }
+
+    /// Reads a table from a file; see [`Hardening::from_csv`].
+    ///
+    /// # Errors
+    /// The file is missing, a directory or not UTF-8 text, or the table cannot be used.
+    pub fn from_file(path: &Path, young: f64) -> Result<Self, HardeningError> {
+        let origin = path.display().to_string();
+        match std::fs::read(path).map(String::from_utf8) {
+            Ok(Ok(text)) => Self::from_csv(&text, &origin, young),
+            Ok(Err(_)) => Err(HardeningError::Unreadable {
+                origin,
+                reason: "it is not UTF-8 text".to_owned(),
+            }),
+            Err(error) => Err(HardeningError::Unreadable {
+                origin,
+                reason: error.to_string(),
+            }),
+        }
+    }
+
+    /// Reads a table `strain,stress` of total logarithmic strain and true stress (MPa) under a header of these two words;
+    /// lines that begin with `#` are comments. The plastic strain of a point is strain - stress / `young` (MPa); the first
+    /// point is the yield point, where it is zero. `origin` says in errors where the text comes from.
+    ///
+    /// # Errors
+    /// A malformed table, a first point off the elastic line, plastic strains that do not increase, or a stress that
+    /// decreases; each with the line.
+    pub fn from_csv(text: &str, origin: &str, young: f64) -> Result<Self, HardeningError> {
+        let refuse = |(line, problem)| HardeningError::Malformed {
+            origin: origin.to_owned(),
+            line,
+            problem,
+        };
+        hardening_table::rows(text)
+            .and_then(|rows| hardening_table::plastic_points(&rows, young))
+            .map(|points| Self::through(&points))
+            .map_err(refuse)
+    }
+
+    /// The same from points (total logarithmic strain, true stress in MPa) in memory.
+    ///
+    /// # Errors
+    /// As [`Hardening::from_csv`]; the line is the number of the point.
+    pub fn from_points(points: &[(f64, f64)], young: f64) -> Result<Self, HardeningError> {
+        let refuse = |(line, problem)| HardeningError::Malformed {
+            origin: "of points".to_owned(),
+            line,
+            problem,
+        };
+        let rows: Vec<Row> = points
+            .iter()
+            .zip(1..)
+            .map(|(&(strain, stress), line)| Row {
+                line,
+                strain,
+                stress,
+            })
+            .collect();
+        hardening_table::plastic_points(&rows, young)
+            .map(|points| Self::through(&points))
+            .map_err(refuse)
+    }
+
+    /// Through at least two checked points (plastic strain, stress).
+    fn through(points: &[(f64, f64)]) -> Self {
+        let mut work = 0.0;
+        let segments = points
+            .windows(2)
+            .map(|pair| {
+                let ((start, stress), (end, end_stress)) = (pair[0], pair[1]);
+                let segment = Segment {
+                    start,
+                    stress,
+                    slope: (end_stress - stress) / (end - start),
+                    work,
+                };
+                work += 0.5 * (stress + end_stress) * (end - start);
+                segment
+            })
+            .collect();
+        Hardening { segments }
+    }
+
+    /// Index of the segment that holds `p`; at a kink the one that begins there.
+    fn segment_at(&self, p: f64) -> usize {
+        self.segments
+            .partition_point(|segment| segment.start <= p)
+            .saturating_sub(1)
+    }
+
+    /// Initial yield stress, MPa.
+    pub fn initial(&self) -> f64 {
+        self.segments[0].stress
+    }
+
+    /// Yield stress and slope of the curve (both MPa) at the equivalent plastic strain `p` >= 0; at a kink the slope of the
+    /// segment that begins there.
+    pub fn yield_stress(&self, p: f64) -> (f64, f64) {
+        let segment = &self.segments[self.segment_at(p)];
+        (
+            segment.stress + segment.slope * (p - segment.start),
+            segment.slope,
+        )
+    }
+
+    /// Integral of the yield stress from 0 to `p` >= 0, exact: work per volume, MPa.
+    pub fn plastic_work(&self, p: f64) -> f64 {
+        let segment = &self.segments[self.segment_at(p)];
+        let along = p - segment.start;
+        segment.work + along * (segment.stress + 0.5 * segment.slope * along)
+    }
+
+    /// Radial return for von Mises plasticity: the dp with `q_trial` - 3G dp = yield stress at `p_n` + dp, exact because the
+    /// segments are walked one by one (Simo & Hughes 1998, box 3.2, with the consistency condition piecewise linear).
+    ///
+    /// `q_trial`: equivalent trial stress, MPa; `p_n` >= 0: equivalent plastic strain before; `three_g`: three times the
+    /// shear modulus, MPa, > 0. A NaN comes out as NaN.
+    pub fn return_map(&self, q_trial: f64, p_n: f64, three_g: f64) -> PlasticStep {
+        let first = self.segment_at(p_n);
+        let (yield_stress, slope) = self.yield_stress(p_n);
+        if q_trial <= yield_stress {
+            return PlasticStep {
+                dp: 0.0,
+                yield_stress,
+                slope,
+            };
+        }
+        let mut index = first;
+        loop {
+            let segment = &self.segments[index];
+            let yield_at_p_n = segment.stress + segment.slope * (p_n - segment.start);
+            let dp = (q_trial - yield_at_p_n) / (three_g + segment.slope);
+            match self.segments.get(index + 1) {
+                Some(next) if p_n + dp >= next.start => index += 1,
+                _ => {
+                    return PlasticStep {
+                        dp,
+                        yield_stress: yield_at_p_n + segment.slope * dp,
+                        slope: segment.slope,
+                    };
+                }
+            }
+        }
+    }
+}
