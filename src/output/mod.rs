@@ -14,13 +14,13 @@ pub mod folder;
 #[allow(unsafe_code)]
 mod hdf_collective;
 pub mod history;
-//TMP pub mod monitor;
+pub mod monitor;
 //TMP pub mod plot;
 //TMP mod plot_frame;
 //TMP mod plot_shape;
 pub mod record;
-//TMP pub mod summary;
-//TMP pub mod verdict;
+pub mod summary;
+pub mod verdict;
 pub mod vtkhdf;
 mod vtkhdf_layout;
 
@@ -28,7 +28,7 @@ pub use error::OutputError;
 pub use fields::{ContactFile, ContactSample, FieldSample, SheetFile, SheetPart, ToolsFile};
 pub use folder::OutputDir;
 pub use history::History;
-//TMP pub use monitor::Monitor;
+pub use monitor::Monitor;
 pub use record::StepRecord;
-//TMP pub use summary::Summary;
-//TMP pub use verdict::{Tolerance, Verdict, VerdictRow, VerdictTable};
+pub use summary::Summary;
+pub use verdict::{Tolerance, Verdict, VerdictRow, VerdictTable};

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// What one accepted step gives. Forces are those of the whole sheet (both halves, full width) in N; energies are
 /// those of the whole sheet in mJ = N mm; stroke counts positive downwards, displacements `dy` positive upwards.
 /// A value that was not computed is NaN.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct StepRecord {
     /// Time at the end of the step, ms.
     pub t_ms: f64,
