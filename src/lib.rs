@@ -1,4 +1,15 @@
 //! Sheet metal forming with contact: the NAFEMS contact benchmark 3 (code_aster test SSNP155).
+//!
+//! Units are mm, N, MPa, g and ms throughout. ARCHITECTURE.md tells what lives where.
+
+#![deny(unsafe_code)]
 
 pub mod case;
+pub mod contact;
+pub mod element;
 pub mod material;
+pub mod mesh;
+pub mod output;
+pub mod run;
+pub mod system;
+pub mod tool;

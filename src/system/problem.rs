@@ -1,10 +1,11 @@
 //! What is solved: the sheet, its material, the tools and their motion.
 
+use crate::case::{Case, Dynamics, Tools};
 use crate::contact::{ContactSample, contact_rule};
 use crate::element::Quadrature;
 use crate::material::VonMises;
 use crate::mesh::{SheetMesh, SurfaceSide};
-use crate::tool::{Profile, PunchMotion};
+use crate::tool::{Profile, PunchMotion, die, punch};
 
 /// The whole problem, the same on every rank.
 #[derive(Clone, Debug)]
@@ -34,16 +35,38 @@ pub struct Problem {
 }
 
 impl Problem {
+    /// The problem a case describes.
+    pub fn new(case: &Case) -> Self {
+        let Tools { punch_radius, die_radius, die_shoulder_radius } = case.tools;
+        let (sheet, divisions, loading) = (&case.sheet, &case.discretisation, &case.loading);
+        let density = match loading.dynamics {
+            Dynamics::Slow => case.material.density,
+            Dynamics::None => 0.0,
+        };
+        Self {
+            mesh: SheetMesh::new(sheet.half_length(), sheet.thickness, divisions.nx, divisions.ny),
+            material: VonMises::new(
+                case.material.young_modulus,
+                case.material.poisson_ratio,
+                case.material.hardening.clone(),
+            ),
+            young_modulus: case.material.young_modulus,
+            density,
+            quadrature: if divisions.quadrature == 2 { Quadrature::Reduced } else { Quadrature::Full },
+            contact_samples: contact_rule(divisions.contact_points_per_edge),
+            contact_compliance: divisions.contact_compliance,
+            die: die(die_radius, die_shoulder_radius, sheet.half_length()),
+            punch: punch(punch_radius, sheet.thickness, loading.stroke),
+            motion: PunchMotion { stroke: loading.stroke, unload_fraction: loading.unload_fraction, time_load: loading.time_load, time_unload: loading.time_unload },
+            whole_sheet: sheet.force_factor(),
+        }
+    }
+
     /// The tool a face of the sheet can touch, and how far it has moved at time `t` (ms), mm.
     pub fn tool(&self, side: SurfaceSide, t: f64) -> (&Profile, [f64; 2]) {
         match side {
             SurfaceSide::Bottom => (&self.die, [0.0, 0.0]),
             SurfaceSide::Top => (&self.punch, [0.0, -self.motion.depth(t)]),
         }
-    }
-
-    /// Contact points with `count` of them on each edge.
-    pub fn contact_samples(count: usize) -> Vec<ContactSample> {
-        contact_rule(count)
     }
 }

@@ -19,3 +19,22 @@ impl Noise {
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 }
+
+/// The benchmark's aluminium.
+pub fn aluminium() -> VonMises {
+    let case = Case::reference().unwrap();
+    VonMises::new(
+        case.material.young_modulus,
+        case.material.poisson_ratio,
+        case.material.hardening,
+    )
+}
+
+/// The benchmark on a coarse mesh of a short sheet.
+pub fn small_problem(nx: usize, ny: usize) -> Problem {
+    let mut case = Case::reference().unwrap();
+    case.discretisation.nx = nx;
+    case.discretisation.ny = ny;
+    case.discretisation.contact_points_per_edge = 3;
+    Problem::new(&case)
+}

@@ -1,0 +1,92 @@
+//! Why something could not be written or read, as one sentence with the path in it.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+/// A failure of the output room. It can be sent from rank to rank, so that every rank reports the same one.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
+pub enum OutputError {
+    /// The output folder does not exist and could not be made.
+    #[error("cannot create the output folder {}: {reason}", path.display())]
+    CannotCreateFolder {
+        /// The folder asked for.
+        path: PathBuf,
+        /// The system's words.
+        reason: String,
+    },
+    /// Something that is not a folder has the name of the output folder.
+    #[error("the output folder {} is a file, not a folder: choose another name or move the file away", path.display())]
+    NotAFolder {
+        /// The folder asked for.
+        path: PathBuf,
+    },
+    /// The folder exists, but no file can be made in it.
+    #[error("the output folder {} is not writable: {reason}", path.display())]
+    NotWritable {
+        /// The folder asked for.
+        path: PathBuf,
+        /// The system's words.
+        reason: String,
+    },
+    /// A file could not be written.
+    #[error("cannot write {}: {reason}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// The system's words.
+        reason: String,
+    },
+    /// A file could not be read, or does not hold what it should.
+    #[error("cannot read {}: {reason}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, with the place where possible.
+        reason: String,
+    },
+    /// HDF5 refused an operation.
+    #[error("HDF5 failed on {} while {doing}: {reason}", path.display())]
+    Hdf5 {
+        /// The file.
+        path: PathBuf,
+        /// What was being done.
+        doing: String,
+        /// HDF5's words.
+        reason: String,
+    },
+    /// The data handed over do not fit the file they are meant for (a mistake in the calling code).
+    #[error("the data for {} do not fit: {reason}", path.display())]
+    Mismatch {
+        /// The file.
+        path: PathBuf,
+        /// What does not fit.
+        reason: String,
+    },
+    /// A figure could not be drawn.
+    #[error("cannot draw the figure {}: {reason}", path.display())]
+    Figure {
+        /// The file the figure was meant for.
+        path: PathBuf,
+        /// The reason.
+        reason: String,
+    },
+}
+
+impl OutputError {
+    pub(crate) fn write(path: &Path, reason: impl ToString) -> Self {
+        Self::Write { path: path.into(), reason: reason.to_string() }
+    }
+
+    pub(crate) fn read(path: &Path, reason: impl ToString) -> Self {
+        Self::Read { path: path.into(), reason: reason.to_string() }
+    }
+
+    pub(crate) fn hdf5(path: &Path, doing: impl ToString, reason: impl ToString) -> Self {
+        Self::Hdf5 { path: path.into(), doing: doing.to_string(), reason: reason.to_string() }
+    }
+
+    pub(crate) fn mismatch(path: &Path, reason: impl ToString) -> Self {
+        Self::Mismatch { path: path.into(), reason: reason.to_string() }
+    }
+}

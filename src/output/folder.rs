@@ -1,0 +1,122 @@
+//! The output folder: made once, checked once, the same answer on every rank.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+
+use mpi::traits::Communicator;
+
+use super::{OutputError, agreement::agree};
+
+/// A folder that exists and takes files, as far as rank 0 could check.
+#[derive(Debug, Clone)]
+pub struct OutputDir {
+    path: PathBuf,
+}
+
+impl OutputDir {
+    /// Makes the folder (and those above it) if needed and tries to write in it. Collective over `comm`: rank 0
+    /// does the work, all ranks return the same result.
+    ///
+    /// # Errors
+    /// [`OutputError::NotAFolder`], [`OutputError::CannotCreateFolder`] or [`OutputError::NotWritable`].
+    pub fn create(path: impl AsRef<Path>, comm: &impl Communicator) -> Result<Self, OutputError> {
+        let path = path.as_ref();
+        let mine = if comm.rank() == 0 { prepare(path) } else { Ok(()) };
+        agree(comm, mine)?;
+        Ok(Self { path: path.into() })
+    }
+
+    /// The folder itself.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The path of a file of this folder.
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.path.join(name)
+    }
+
+    /// `history.csv`, see [`super::History`].
+    pub fn history(&self) -> PathBuf {
+        self.file("history.csv")
+    }
+
+    /// `fields.vtkhdf`, see [`super::SheetFile`].
+    pub fn fields(&self) -> PathBuf {
+        self.file("fields.vtkhdf")
+    }
+
+    /// `tools.vtkhdf`, see [`super::ToolsFile`].
+    pub fn tools(&self) -> PathBuf {
+        self.file("tools.vtkhdf")
+    }
+
+    /// `contact.vtkhdf`, see [`super::ContactFile`].
+    pub fn contact(&self) -> PathBuf {
+        self.file("contact.vtkhdf")
+    }
+
+    /// `summary.json`, see [`super::Summary`].
+    pub fn summary(&self) -> PathBuf {
+        self.file("summary.json")
+    }
+
+    /// `force.svg`, see [`super::plot::force`].
+    pub fn force_figure(&self) -> PathBuf {
+        self.file("force.svg")
+    }
+
+    /// `shape.svg`, see [`super::plot::shape`].
+    pub fn shape_figure(&self) -> PathBuf {
+        self.file("shape.svg")
+    }
+}
+
+/// The check itself, without MPI.
+fn prepare(path: &Path) -> Result<(), OutputError> {
+    match fs::metadata(path) {
+        Ok(found) if !found.is_dir() => return Err(OutputError::NotAFolder { path: path.into() }),
+        Ok(_) => {}
+        Err(_) => fs::create_dir_all(path)
+            .map_err(|error| OutputError::CannotCreateFolder { path: path.into(), reason: error.to_string() })?,
+    }
+    // Permission bits do not tell the truth on every file system: trying does.
+    let probe = path.join(format!(".probe-{}", std::process::id()));
+    let tried = File::create(&probe).and_then(|_| fs::remove_file(&probe));
+    tried.map_err(|error| OutputError::NotWritable { path: path.into(), reason: error.to_string() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scratch(name: &str) -> PathBuf {
+        std::env::temp_dir().join(format!("ssnp155-folder-{name}-{}", std::process::id()))
+    }
+
+    #[test]
+    fn a_new_folder_is_made_with_those_above_it() {
+        let top = scratch("new");
+        prepare(&top.join("a/b")).unwrap();
+        prepare(&top.join("a/b")).unwrap();
+        assert!(top.join("a/b").is_dir());
+        assert_eq!(fs::read_dir(top.join("a/b")).unwrap().count(), 0);
+        fs::remove_dir_all(top).unwrap();
+    }
+
+    #[test]
+    fn a_file_in_the_way_is_said_so() {
+        let file = scratch("file");
+        fs::write(&file, "").unwrap();
+        assert_eq!(prepare(&file), Err(OutputError::NotAFolder { path: file.clone() }));
+        let below = prepare(&file.join("run")).unwrap_err();
+        assert!(matches!(below, OutputError::CannotCreateFolder { .. }), "{below}");
+        fs::remove_file(file).unwrap();
+    }
+
+    #[test]
+    fn a_folder_that_takes_no_files_is_said_so() {
+        // /proc refuses new files to everybody, including root.
+        assert!(matches!(prepare(Path::new("/proc")), Err(OutputError::NotWritable { .. })));
+    }
+}

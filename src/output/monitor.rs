@@ -1,0 +1,163 @@
+//! What the terminal shows while a run goes on: a header, one line per accepted step, a banner at the end.
+
+use std::io::Write;
+
+use super::StepRecord;
+
+/// Width of the banners, characters.
+const WIDTH: usize = 80;
+
+/// The header above the step lines, without a line break.
+pub fn header() -> String {
+    format!(
+        "{:>7}  {:>9}  {:>9}  {:>9}  {:>8}  {:>6}  {:>6}  {:>9}",
+        "done", "t ms", "stroke mm", "force N", "dt ms", "Newton", "active", "gap A mm"
+    )
+}
+
+/// The line of one accepted step of a run that ends at `end_ms`, without a line break.
+pub fn step_line(record: &StepRecord, end_ms: f64) -> String {
+    let share = 100.0 * record.t_ms / end_ms;
+    let refused = match record.refused_solves {
+        0 => String::new(),
+        count => format!("  {count} refused"),
+    };
+    format!(
+        "{share:>5.1} %  {:>9.3}  {:>9.4}  {:>9.3}  {:>8.4}  {:>6}  {:>6}  {:>9.5}{refused}",
+        record.t_ms,
+        record.stroke_mm,
+        record.force_N,
+        record.dt_ms,
+        record.newton_iterations,
+        record.active_points,
+        record.gap_A_mm,
+    )
+}
+
+/// The banner of a run that computed everything asked for. `facts` are shown as aligned pairs. Ends with a line break.
+pub fn finished_banner(title: &str, facts: &[(&str, String)]) -> String {
+    banner('=', &format!("FINISHED: {title}"), facts)
+}
+
+/// The banner of a run that did not: `place` says where (time, stroke, step), `reason` why. It cannot be mistaken for
+/// the other one. Ends with a line break.
+pub fn failed_banner(place: &str, reason: &str, facts: &[(&str, String)]) -> String {
+    let mut all = vec![("where", place.to_owned()), ("why", reason.to_owned())];
+    all.extend(facts.iter().cloned());
+    banner('#', "FAILED: the run did not finish", &all)
+}
+
+fn banner(frame: char, title: &str, facts: &[(&str, String)]) -> String {
+    let rule = frame.to_string().repeat(WIDTH);
+    let names = facts.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
+    let mut text = format!("{rule}\n{frame}  {title}\n");
+    for (name, value) in facts {
+        // The value keeps to its own column also where it takes several lines.
+        for (index, line) in wrap(value, WIDTH.saturating_sub(names + 6)).iter().enumerate() {
+            let name = if index == 0 { name } else { "" };
+            text.push_str(&format!("{frame}  {name:<names$}  {line}\n"));
+        }
+    }
+    text + &rule + "\n"
+}
+
+/// Breaks at spaces; a word longer than a line stays whole.
+fn wrap(text: &str, width: usize) -> Vec<String> {
+    let mut lines = Vec::new();
+    for paragraph in text.lines() {
+        let mut line = String::new();
+        for word in paragraph.split_whitespace() {
+            if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > width {
+                lines.push(std::mem::take(&mut line));
+            }
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line.push_str(word);
+        }
+        lines.push(line);
+    }
+    lines
+}
+
+/// Writes the lines above on rank 0 and nothing on the others.
+///
+/// A terminal that went away must not end a run, so failures to write are ignored; everything shown is in the files.
+pub struct Monitor<W: Write> {
+    out: Option<W>,
+    end_ms: f64,
+}
+
+impl<W: Write> Monitor<W> {
+    /// A monitor of rank `rank` for a run that ends at `end_ms` (ms). `out` may be a `&mut dyn Write`.
+    pub fn new(rank: i32, out: W, end_ms: f64) -> Self {
+        Self { out: (rank == 0).then_some(out), end_ms }
+    }
+
+    /// Shows [`header`].
+    pub fn header(&mut self) {
+        self.show(&(header() + "\n"));
+    }
+
+    /// Shows [`step_line`].
+    pub fn step(&mut self, record: &StepRecord) {
+        let line = step_line(record, self.end_ms);
+        self.show(&(line + "\n"));
+    }
+
+    /// Shows any other text, a banner or the verdict table for example, as it is.
+    pub fn show(&mut self, text: &str) {
+        if let Some(out) = &mut self.out {
+            let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record() -> StepRecord {
+        StepRecord {
+            t_ms: 450.0,
+            stroke_mm: 14.25,
+            force_N: 168.123,
+            dt_ms: 2.5,
+            newton_iterations: 5,
+            active_points: 42,
+            gap_A_mm: 1.25e-3,
+            refused_solves: 2,
+            ..StepRecord::default()
+        }
+    }
+
+    #[test]
+    fn step_lines_stand_under_their_header() {
+        let line = step_line(&record(), 900.0);
+        assert_eq!(header(), "   done       t ms  stroke mm    force N     dt ms  Newton  active   gap A mm");
+        assert_eq!(line, " 50.0 %    450.000    14.2500    168.123    2.5000       5      42    0.00125  2 refused");
+    }
+
+    #[test]
+    fn only_rank_0_shows_anything() {
+        let (mut first, mut second) = (Vec::new(), Vec::new());
+        for (rank, out) in [(0, &mut first), (1, &mut second)] {
+            let mut monitor = Monitor::new(rank, out as &mut dyn Write, 900.0);
+            monitor.header();
+            monitor.step(&record());
+        }
+        assert_eq!(first.iter().filter(|&&byte| byte == b'\n').count(), 2);
+        assert!(second.is_empty());
+    }
+
+    #[test]
+    fn a_failed_run_says_where_and_why_within_the_width() {
+        let reason = "Newton's iteration diverged 12 times in a row while the step shrank from 5 ms to 0.001 ms; \
+                      the last attempt ended with a residual of 3.2e-4 mm.";
+        let text = failed_banner("step 311, t = 612.3 ms, stroke 19.39 mm", reason, &[]);
+        assert!(text.contains("FAILED") && text.contains("where  step 311") && text.contains("why    Newton's"));
+        assert!(text.lines().all(|line| line.starts_with('#') && line.chars().count() <= WIDTH), "{text}");
+        let good = finished_banner("4 of 4 hold", &[("steps", "191".into())]);
+        assert!(good.contains("FINISHED: 4 of 4 hold") && !good.contains('#'));
+    }
+}

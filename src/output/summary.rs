@@ -1,0 +1,213 @@
+//! `summary.json`: what was run, how it ended and what came out, for people and programs.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::{OutputError, StepRecord, VerdictTable, atomic};
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum Status {
+    /// Everything asked for was computed.
+    #[serde(rename = "finished")]
+    Finished,
+    /// The solver gave up; what came before is valid.
+    #[serde(rename = "not converged")]
+    NotConverged,
+    /// Stopped on request (signal, time limit); what came before is valid.
+    #[serde(rename = "stopped")]
+    Stopped,
+    /// Something else went wrong: input, files, memory.
+    #[serde(rename = "failed")]
+    Failed,
+}
+
+/// Counts over the whole run.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Counts {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Attempts refused and redone with a shorter step.
+    pub refused_solves: u64,
+    /// Newton iterations of all attempts.
+    pub newton_iterations: u64,
+    /// Linear systems solved.
+    pub linear_solves: u64,
+}
+
+/// The worst value of one certificate over the run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct WorstValue {
+    /// The column of the history it comes from.
+    pub certificate: &'static str,
+    /// The worst value, in the unit of that column.
+    pub value: f64,
+    /// The step where it occurred, counted from 1.
+    pub step: u64,
+    /// Its time, ms.
+    pub t_ms: f64,
+}
+
+/// One certificate: its column in the history, and how bad a record is (larger is worse).
+type Certificate = (&'static str, fn(&StepRecord) -> f64, fn(f64) -> f64);
+
+const CERTIFICATES: [Certificate; 5] = [
+    ("max_penetration_mm", |record| record.max_penetration_mm, |value| value),
+    ("min_contact_force_N", |record| record.min_contact_force_N, |value| -value),
+    ("energy_error", |record| record.energy_error, f64::abs),
+    ("balance_error", |record| record.balance_error, f64::abs),
+    ("residual_norm_mm", |record| record.residual_norm_mm, f64::abs),
+];
+
+/// Watches the certificates of every step and remembers where each was worst.
+#[derive(Debug, Clone, Default)]
+pub struct Certificates {
+    steps: u64,
+    worst: [Option<WorstValue>; CERTIFICATES.len()],
+}
+
+impl Certificates {
+    /// Looks at the next accepted step. A value that is not a number counts as the worst of all.
+    pub fn observe(&mut self, record: &StepRecord) {
+        self.steps += 1;
+        for (worst, (certificate, value, badness)) in self.worst.iter_mut().zip(CERTIFICATES) {
+            let value = value(record);
+            // `!(a <= b)` also lets a NaN replace a number, and nothing replace a NaN.
+            let replaces = worst.is_none_or(|old| !old.value.is_nan() && !(badness(value) <= badness(old.value)));
+            if replaces {
+                *worst = Some(WorstValue { certificate, value, step: self.steps, t_ms: record.t_ms });
+            }
+        }
+    }
+
+    /// The worst values so far; empty before the first step.
+    pub fn worst(&self) -> Vec<WorstValue> {
+        self.worst.iter().flatten().copied().collect()
+    }
+}
+
+/// What made the result: enough to make it again.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Provenance {
+    /// Version of this program.
+    pub version: String,
+    /// Git revision of its source, with a mark if the source was changed.
+    pub git_revision: String,
+    /// Version of PETSc.
+    pub petsc_version: String,
+    /// Number of MPI ranks.
+    pub mpi_ranks: u32,
+    /// Compiler, profile and the like; nothing that names the machine.
+    pub build: BTreeMap<String, String>,
+    /// Every option that has a value, default or not.
+    pub options: BTreeMap<String, String>,
+}
+
+/// What it cost.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Timing {
+    /// Processor time of all ranks, s.
+    pub cpu_s: f64,
+    /// Time on the clock, s.
+    pub wall_s: f64,
+}
+
+/// The whole summary. Numbers that are not finite become `null` in JSON.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Summary {
+    /// How the run ended.
+    pub status: Status,
+    /// Where and why, if it did not finish.
+    pub reason: Option<String>,
+    /// The last accepted step, if there was one.
+    #[serde(rename = "final")]
+    pub last: Option<StepRecord>,
+    /// Counts over the run.
+    pub counts: Counts,
+    /// Tolerances by name, units in the names.
+    pub tolerances: BTreeMap<String, f64>,
+    /// Worst certificate values, see [`Certificates::worst`].
+    pub worst: Vec<WorstValue>,
+    /// The comparison with the references.
+    pub verdicts: VerdictTable,
+    /// What made it.
+    pub provenance: Provenance,
+    /// What it cost.
+    pub timing: Timing,
+}
+
+impl Summary {
+    /// The JSON text, ending with a line break.
+    ///
+    /// # Errors
+    /// [`OutputError::Write`]; it cannot happen with the types above, but nothing here relies on that.
+    pub fn json(&self) -> Result<String, OutputError> {
+        let text = serde_json::to_string_pretty(self);
+        text.map(|text| text + "\n").map_err(|error| OutputError::write(Path::new("summary.json"), error))
+    }
+
+    /// Writes the summary: the file is there in full or not at all.
+    ///
+    /// # Errors
+    /// [`OutputError::Write`].
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), OutputError> {
+        atomic::write(path.as_ref(), self.json()?.as_bytes())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::{Tolerance, VerdictRow};
+
+    fn record(t_ms: f64) -> StepRecord {
+        StepRecord { t_ms, ..StepRecord::default() }
+    }
+
+    #[test]
+    fn the_worst_values_know_their_step() {
+        let mut certificates = Certificates::default();
+        certificates.observe(&StepRecord { max_penetration_mm: 1e-9, min_contact_force_N: 0.5, ..record(1.0) });
+        certificates.observe(&StepRecord { energy_error: -2e-3, min_contact_force_N: -0.1, ..record(2.0) });
+        certificates.observe(&StepRecord { energy_error: 1e-3, balance_error: f64::NAN, ..record(3.0) });
+        certificates.observe(&record(4.0));
+        let worst = certificates.worst();
+        let at = |name: &str| worst.iter().find(|w| w.certificate == name).map(|w| (w.value, w.step)).unwrap();
+        assert_eq!(at("max_penetration_mm"), (1e-9, 1));
+        assert_eq!(at("min_contact_force_N"), (-0.1, 2));
+        assert_eq!(at("energy_error"), (-2e-3, 2));
+        assert_eq!(at("balance_error").1, 3);
+    }
+
+    #[test]
+    fn the_json_has_what_it_promises() {
+        let row = VerdictRow::new("force at d = 20", 180.6, 181.0, Tolerance::Relative(0.02), "N", "code_aster");
+        let summary = Summary {
+            status: Status::NotConverged,
+            reason: Some("step 12 at t = 40 ms".into()),
+            last: Some(StepRecord { gap_A_mm: f64::NAN, force_N: 151.5, ..record(40.0) }),
+            counts: Counts { steps: 11, refused_solves: 6, newton_iterations: 80, linear_solves: 86 },
+            tolerances: BTreeMap::from([("residual_mm".into(), 1e-8)]),
+            worst: Vec::new(),
+            verdicts: VerdictTable { rows: vec![row] },
+            provenance: Provenance {
+                version: "0.1.0".into(),
+                git_revision: "0123abc".into(),
+                petsc_version: "3.18.5".into(),
+                mpi_ranks: 2,
+                build: BTreeMap::new(),
+                options: BTreeMap::from([("friction".into(), "0.1342".into())]),
+            },
+            timing: Timing { cpu_s: 12.5, wall_s: 6.5 },
+        };
+        let value: serde_json::Value = serde_json::from_str(&summary.json().unwrap()).unwrap();
+        assert_eq!(value["status"], "not converged");
+        assert_eq!(value["final"]["force_N"], 151.5);
+        assert!(value["final"]["gap_A_mm"].is_null());
+        assert_eq!(value["verdicts"][0]["verdict"], "holds");
+        assert_eq!(value["verdicts"][0]["tolerance"]["relative"], 0.02);
+        assert_eq!(value["provenance"]["options"]["friction"], "0.1342");
+    }
+}

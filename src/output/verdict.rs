@@ -1,0 +1,264 @@
+//! Does the result hold? One row per quantity: computed against reference, with its own tolerance and source.
+
+use std::fmt::{self, Write as _};
+
+use serde::Serialize;
+
+/// How far the computed value may be from the reference.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Tolerance {
+    /// A fraction of the reference: |computed - reference| <= fraction x |reference|.
+    Relative(f64),
+    /// A distance in the unit of the quantity: |computed - reference| <= distance.
+    Absolute(f64),
+    /// The reference is an upper bound.
+    AtMost,
+    /// The reference is a lower bound.
+    AtLeast,
+}
+
+impl fmt::Display for Tolerance {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Relative(fraction) => write!(f, "{} %", number(100.0 * fraction)),
+            Self::Absolute(distance) => write!(f, "±{}", number(*distance)),
+            Self::AtMost => f.write_str("at most"),
+            Self::AtLeast => f.write_str("at least"),
+        }
+    }
+}
+
+/// The verdict on one row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Within the tolerance.
+    Holds,
+    /// Outside it, or not a number.
+    Fails,
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Holds => "holds",
+            Self::Fails => "FAILS",
+        })
+    }
+}
+
+/// One compared quantity.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct VerdictRow {
+    /// What is compared, in words.
+    pub quantity: String,
+    /// Our value.
+    pub computed: f64,
+    /// The value to compare with, or the bound.
+    pub reference: f64,
+    /// How they are compared.
+    pub tolerance: Tolerance,
+    /// Unit of both values.
+    pub unit: String,
+    /// Where the reference comes from.
+    pub source: String,
+    /// The outcome; it follows from the values above.
+    pub verdict: Verdict,
+}
+
+impl VerdictRow {
+    /// Compares. A value that is not a number fails.
+    pub fn new(
+        quantity: impl Into<String>,
+        computed: f64,
+        reference: f64,
+        tolerance: Tolerance,
+        unit: impl Into<String>,
+        source: impl Into<String>,
+    ) -> Self {
+        let difference = (computed - reference).abs();
+        // A NaN makes every comparison below false.
+        let holds = match tolerance {
+            Tolerance::Relative(fraction) => difference <= fraction * reference.abs(),
+            Tolerance::Absolute(distance) => difference <= distance,
+            Tolerance::AtMost => computed <= reference,
+            Tolerance::AtLeast => computed >= reference,
+        };
+        let verdict = if holds { Verdict::Holds } else { Verdict::Fails };
+        let (quantity, unit, source) = (quantity.into(), unit.into(), source.into());
+        Self { quantity, computed, reference, tolerance, unit, source, verdict }
+    }
+
+    fn cells(&self) -> [String; 7] {
+        [
+            self.quantity.clone(),
+            number(self.computed),
+            number(self.reference),
+            self.tolerance.to_string(),
+            self.unit.clone(),
+            self.source.clone(),
+            self.verdict.to_string(),
+        ]
+    }
+}
+
+const HEADS: [&str; 7] = ["quantity", "computed", "reference", "tolerance", "unit", "source", "verdict"];
+const RIGHT_ALIGNED: [bool; 7] = [false, true, true, true, false, false, false];
+
+/// All compared quantities of a run.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct VerdictTable {
+    /// The rows, in the order they are shown.
+    pub rows: Vec<VerdictRow>,
+}
+
+impl VerdictTable {
+    /// Whether there is something to judge and every row holds. An empty table does not hold.
+    pub fn all_hold(&self) -> bool {
+        !self.rows.is_empty() && self.failures() == 0
+    }
+
+    /// Number of rows that fail.
+    pub fn failures(&self) -> usize {
+        self.rows.iter().filter(|row| row.verdict == Verdict::Fails).count()
+    }
+
+    /// Aligned table for the terminal, with a last line that counts; ends with a line break.
+    pub fn text(&self) -> String {
+        let cells: Vec<_> = self.rows.iter().map(VerdictRow::cells).collect();
+        let widths = widths(&cells);
+        let rule = "-".repeat(widths.iter().sum::<usize>() + 2 * (widths.len() - 1));
+        let mut text = line(&HEADS.map(str::to_owned), &widths, "  ");
+        text.push_str(&rule);
+        text.push('\n');
+        cells.iter().for_each(|row| text.push_str(&line(row, &widths, "  ")));
+        text.push_str(&rule);
+        let count = self.rows.len();
+        let outcome = match (count, self.failures()) {
+            (0, _) => "nothing was compared".to_owned(),
+            (_, 0) => format!("all {count} hold"),
+            (_, failures) => format!("{failures} of {count} FAIL"),
+        };
+        let _ = writeln!(text, "\n{outcome}");
+        text
+    }
+
+    /// The same as a Markdown table.
+    pub fn markdown(&self) -> String {
+        let cells: Vec<_> = self.rows.iter().map(|row| row.cells().map(|cell| cell.replace('|', "\\|"))).collect();
+        let widths = widths(&cells);
+        let row = |cells: &[String; 7]| format!("| {} |\n", line(cells, &widths, " | ").trim_end_matches('\n'));
+        let mut text = row(&HEADS.map(str::to_owned));
+        for (width, right) in widths.iter().zip(RIGHT_ALIGNED) {
+            let _ = write!(text, "|{}{}", "-".repeat(width + 1), if right { ':' } else { '-' });
+        }
+        text.push_str("|\n");
+        cells.iter().for_each(|cells| text.push_str(&row(cells)));
+        text
+    }
+}
+
+fn widths(rows: &[[String; 7]]) -> [usize; 7] {
+    let mut widths = HEADS.map(|head| head.chars().count());
+    for row in rows {
+        for (width, cell) in widths.iter_mut().zip(row) {
+            *width = (*width).max(cell.chars().count());
+        }
+    }
+    widths
+}
+
+fn line(cells: &[String; 7], widths: &[usize; 7], separator: &str) -> String {
+    let padded = cells.iter().zip(widths).zip(RIGHT_ALIGNED).map(|((cell, width), right)| {
+        if right { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
+    });
+    let joined = padded.collect::<Vec<_>>().join(separator);
+    // Markdown needs the padding of the last column to close its cells; a terminal does not.
+    if separator.contains('|') { joined + "\n" } else { joined.trim_end().to_owned() + "\n" }
+}
+
+/// Six significant digits without trailing zeros; powers of ten for the very small and the very large.
+pub(crate) fn number(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let magnitude = value.abs().log10().floor();
+    if !(-4.0..7.0).contains(&magnitude) {
+        return format!("{value:.3e}");
+    }
+    let decimals = (5.0 - magnitude).clamp(0.0, 9.0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table() -> VerdictTable {
+        let document = "SSNP155 document";
+        VerdictTable {
+            rows: vec![
+                VerdictRow::new("DY at A, punch side", -28.5, -28.5, Tolerance::Relative(1e-3), "mm", document),
+                VerdictRow::new("DY at A, sheet side", -29.4, -29.001, Tolerance::Absolute(0.05), "mm", "code_aster"),
+                VerdictRow::new("largest penetration", 3.2e-9, 1e-3, Tolerance::AtMost, "mm", "own | limit"),
+            ],
+        }
+    }
+
+    #[test]
+    fn each_kind_of_tolerance_judges_as_it_says() {
+        let judge = |computed, reference, tolerance| {
+            VerdictRow::new("", computed, reference, tolerance, "", "").verdict == Verdict::Holds
+        };
+        assert!(judge(-28.51, -28.5, Tolerance::Relative(1e-3)));
+        assert!(!judge(-28.54, -28.5, Tolerance::Relative(1e-3)));
+        assert!(judge(1.0, 1.1, Tolerance::Absolute(0.11)) && !judge(1.0, 1.1, Tolerance::Absolute(0.09)));
+        assert!(judge(1.0, 2.0, Tolerance::AtMost) && !judge(2.1, 2.0, Tolerance::AtMost));
+        assert!(judge(0.0, -1.0, Tolerance::AtLeast) && !judge(-2.0, -1.0, Tolerance::AtLeast));
+        for tolerance in [Tolerance::Relative(1.0), Tolerance::Absolute(1.0), Tolerance::AtMost, Tolerance::AtLeast] {
+            assert!(!judge(f64::NAN, 1.0, tolerance), "{tolerance} accepted NaN");
+        }
+    }
+
+    #[test]
+    fn an_empty_table_does_not_hold() {
+        assert!(!VerdictTable::default().all_hold());
+        assert!(VerdictTable::default().text().ends_with("nothing was compared\n"));
+    }
+
+    #[test]
+    fn the_text_is_aligned_and_counts_the_failures() {
+        let text = table().text();
+        let expected = "\
+quantity             computed  reference  tolerance  unit  source            verdict
+------------------------------------------------------------------------------------
+DY at A, punch side     -28.5      -28.5      0.1 %  mm    SSNP155 document  holds
+DY at A, sheet side     -29.4    -29.001      ±0.05  mm    code_aster        FAILS
+largest penetration  3.200e-9      0.001    at most  mm    own | limit       holds
+------------------------------------------------------------------------------------
+1 of 3 FAIL
+";
+        assert_eq!(text, expected, "{text}");
+    }
+
+    #[test]
+    fn the_markdown_has_as_many_columns_in_every_row() {
+        let text = table().markdown();
+        for line in text.lines() {
+            assert_eq!(line.replace("\\|", "").matches('|').count(), 8, "{line}");
+        }
+        assert!(text.contains("own \\| limit") && text.contains("FAILS"));
+    }
+
+    #[test]
+    fn numbers_keep_six_digits() {
+        assert_eq!(number(180.612_345), "180.612");
+        assert_eq!(number(-0.000_123_456_7), "-0.000123457");
+        assert_eq!(number(1_234_567.0), "1234567");
+        assert_eq!(number(2.5e-12), "2.500e-12");
+        assert_eq!(number(f64::NAN), "NaN");
+    }
+}

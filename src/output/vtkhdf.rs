@@ -1,0 +1,210 @@
+//! A time series on a mesh that does not change, in VTK's own HDF5 layout (VTKHDF 2.0, `UnstructuredGrid`).
+//!
+//! Written by all ranks together through MPI-IO, one partition per rank; ParaView (5.12 or newer) and VTK's
+//! `vtkHDFReader` open it. The mesh and the cell arrays are stored once and every step points at them; only the
+//! point arrays grow.
+//!
+//! What holds when a run is killed: a step is written in two flushes, first its data, then the number of steps, so
+//! the file on disk between two steps is complete and consistent, and a kill there loses nothing. HDF5 keeps no
+//! journal: a kill inside a flush (milliseconds per step) can in unlucky cases leave the file unreadable. The history
+//! table does not depend on it.
+
+use std::path::{Path, PathBuf};
+
+use hdf5::{Attribute, Dataset, File};
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::{AsRaw, Communicator};
+
+use super::vtkhdf_layout::{Layout, StepTable, extend, write_values};
+use super::{OutputError, agreement::agree};
+
+/// VTK's numbers for the cell types used here.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum CellType {
+    /// One point.
+    Vertex = 1,
+    /// A line through any number of points.
+    PolyLine = 4,
+    /// Eight nodes: corners counter-clockwise, then mid-sides starting between the first two corners.
+    QuadraticQuad = 23,
+}
+
+/// One rank's part of the mesh: points in mm, and cells that name them by their local index.
+#[derive(Debug, Clone)]
+pub struct Part {
+    /// Points, mm.
+    pub points: Vec<[f64; 3]>,
+    /// The type of all cells.
+    pub cell_type: CellType,
+    /// The points of all cells, one cell after the other.
+    pub connectivity: Vec<i64>,
+    /// Where each cell starts in `connectivity`, and the end: one entry more than there are cells, starting with 0.
+    pub offsets: Vec<i64>,
+}
+
+impl Part {
+    /// Number of cells.
+    pub fn cells(&self) -> usize {
+        self.offsets.len().saturating_sub(1)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        if self.offsets.first() != Some(&0) || self.offsets.last() != Some(&(self.connectivity.len() as i64)) {
+            return Err("the cell offsets do not span the connectivity".into());
+        }
+        match self.connectivity.iter().find(|&&node| node < 0 || node as usize >= self.points.len()) {
+            Some(node) => Err(format!("a cell names point {node} of {}", self.points.len())),
+            None => Ok(()),
+        }
+    }
+}
+
+/// What kind of numbers an array holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Double precision.
+    F64,
+    /// 32-bit integers.
+    I32,
+}
+
+/// Name and shape of an array; the same on all ranks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ArraySpec {
+    /// The name shown to the user.
+    pub name: &'static str,
+    /// Its unit, stored as an attribute; "1" if it has none.
+    pub unit: &'static str,
+    /// Values per point or cell.
+    pub components: usize,
+    /// Kind of numbers.
+    pub kind: Kind,
+}
+
+/// The values of an array on this rank: all components of the first point (or cell), then those of the second, ...
+#[derive(Debug, Clone, Copy)]
+pub enum Values<'a> {
+    /// Double precision.
+    F64(&'a [f64]),
+    /// 32-bit integers.
+    I32(&'a [i32]),
+}
+
+impl Values<'_> {
+    fn check(&self, spec: &ArraySpec, rows: usize) -> Result<(), String> {
+        let (kind, length) = match self {
+            Self::F64(values) => (Kind::F64, values.len()),
+            Self::I32(values) => (Kind::I32, values.len()),
+        };
+        if kind != spec.kind || length != rows * spec.components {
+            let ArraySpec { name, components, kind: expected, .. } = spec;
+            return Err(format!(
+                "array {name} got {length} values of kind {kind:?}, expected {rows} x {components} of kind {expected:?}"
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// The file being written. Dropping it closes the file on all ranks together: do that before MPI is finalised.
+pub struct TimeSeries {
+    path: PathBuf,
+    comm: SimpleCommunicator,
+    steps: usize,
+    point_specs: Vec<ArraySpec>,
+    point_arrays: Vec<Dataset>,
+    local_points: usize,
+    first_point: usize,
+    total_points: usize,
+    table: StepTable,
+    count: Attribute,
+    // Last, so that everything in the file is released before the file itself.
+    file: File,
+}
+
+impl TimeSeries {
+    /// Starts a new file with the mesh and the cell arrays, and no step yet. Collective over `comm`; all ranks return
+    /// the same result. Ranks without points or cells hand over an empty part.
+    ///
+    /// # Errors
+    /// [`OutputError::Mismatch`] if the part contradicts itself, [`OutputError::Hdf5`] if the file cannot be written.
+    pub fn create(
+        path: impl AsRef<Path>,
+        comm: &impl Communicator,
+        part: &Part,
+        point_arrays: &[ArraySpec],
+        cell_arrays: &[(ArraySpec, Values)],
+    ) -> Result<Self, OutputError> {
+        let path = path.as_ref();
+        let checked = cell_arrays.iter().try_for_each(|(spec, values)| values.check(spec, part.cells()));
+        agree(comm, part.check().and(checked).map_err(|reason| OutputError::mismatch(path, reason)))?;
+        let comm = comm.duplicate();
+        let opened = File::with_options().with_fapl(|access| access.mpio(comm.as_raw(), None)).create(path);
+        let file = agree(&comm, opened.map_err(|error| OutputError::hdf5(path, "creating it", error)))?;
+        let layout = Layout::new(&comm, part);
+        let failed = |error| OutputError::hdf5(path, "writing the mesh", error);
+        let made = layout.define(&file, point_arrays, cell_arrays).map_err(|error| failed(error.to_string()));
+        let (point_datasets, table, count) = agree(&comm, made)?;
+        let written = layout.write_mesh(&file, part, cell_arrays).map_err(failed);
+        agree(&comm, written.and(file.flush().map_err(|error| failed(error.to_string()))))?;
+        Ok(Self {
+            path: path.into(),
+            steps: 0,
+            point_specs: point_arrays.to_vec(),
+            point_arrays: point_datasets,
+            local_points: part.points.len(),
+            first_point: layout.first_point,
+            total_points: layout.total_points,
+            table,
+            count,
+            file,
+            comm,
+        })
+    }
+
+    /// Steps in the file so far.
+    pub fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// Adds one step at `t_ms` with the values of all point arrays, in the order of their specifications. When it
+    /// returns, the step is on disk. Collective; all ranks return the same result.
+    ///
+    /// # Errors
+    /// [`OutputError::Mismatch`] if the values do not fit, [`OutputError::Hdf5`] if they cannot be written.
+    pub fn append(&mut self, t_ms: f64, values: &[Values]) -> Result<(), OutputError> {
+        let fits = if values.len() == self.point_specs.len() {
+            values.iter().zip(&self.point_specs).try_for_each(|(values, spec)| values.check(spec, self.local_points))
+        } else {
+            Err(format!("{} arrays given, {} expected", values.len(), self.point_specs.len()))
+        };
+        agree(&self.comm, fits.map_err(|reason| OutputError::mismatch(&self.path, reason)))?;
+        let written = self.append_everywhere(t_ms, values);
+        let failed = |reason| OutputError::hdf5(&self.path, format!("writing the step at t = {t_ms} ms"), reason);
+        agree(&self.comm, written.map_err(failed))?;
+        self.steps += 1;
+        Ok(())
+    }
+
+    /// The same collective calls on every rank, also after a failure: a rank that left early would leave the others
+    /// waiting for ever. The first failure is kept.
+    fn append_everywhere(&self, t_ms: f64, values: &[Values]) -> Result<(), String> {
+        let first_row = self.steps * self.total_points;
+        let mut first_failure = Ok(());
+        let mut keep = |result: Result<(), String>| {
+            if first_failure.is_ok() {
+                first_failure = result;
+            }
+        };
+        for (dataset, values) in self.point_arrays.iter().zip(values) {
+            keep(extend(dataset, first_row + self.total_points));
+            keep(write_values(dataset, first_row + self.first_point, values));
+        }
+        keep(self.table.append(self.steps, t_ms, first_row as i64, self.comm.rank() == 0));
+        keep(self.file.flush().map_err(|error| error.to_string()));
+        keep(self.count.write_scalar(&(self.steps as i64 + 1)).map_err(|error| error.to_string()));
+        keep(self.file.flush().map_err(|error| error.to_string()));
+        first_failure
+    }
+}
