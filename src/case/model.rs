@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use super::error::CaseError;
 use super::{geometry, table};
-use crate::material::hardening::Hardening;
+use crate::element::Quadrature;
+use crate::material::Hardening;
+use crate::tool::PunchMotion;
 
 /// Where the texts of options come from: PETSc's option database, or a map in tests.
 pub trait OptionSource {
@@ -105,22 +107,13 @@ pub struct Loading {
 }
 
 impl Loading {
-    /// Time at the end of the run, ms: there is no unloading when the punch does not go back.
-    pub fn end_time(&self) -> f64 {
-        if self.unload_fraction > 0.0 {
-            self.time_load + self.time_unload
-        } else {
-            self.time_load
-        }
-    }
-
-    /// How far below its first position the punch is (mm, positive downwards) at a time (ms); constant outside the run.
-    pub fn punch_travel(&self, time: f64) -> f64 {
-        if time <= self.time_load {
-            self.stroke * (time / self.time_load).max(0.0)
-        } else {
-            let back = ((time - self.time_load) / self.time_unload).min(1.0);
-            self.stroke * (1.0 - self.unload_fraction * back)
+    /// The punch's way in time.
+    pub fn motion(&self) -> PunchMotion {
+        PunchMotion {
+            stroke: self.stroke,
+            unload_fraction: self.unload_fraction,
+            time_load: self.time_load,
+            time_unload: self.time_unload,
         }
     }
 }
@@ -147,8 +140,8 @@ pub struct Discretisation {
     pub nx: usize,
     /// Elements through the thickness.
     pub ny: usize,
-    /// Gauss points per direction, 2 or 3.
-    pub quadrature: usize,
+    /// Gauss rule of the elements.
+    pub quadrature: Quadrature,
     /// Contact points on each element edge of the sheet's surfaces.
     pub contact_points_per_edge: usize,
     /// Gap the tools' surface gives per contact pressure, mm/MPa.

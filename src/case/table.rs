@@ -8,6 +8,7 @@ use std::ops::Bound;
 use super::kind::{Choice, Flag, Integer, Path, Real};
 use super::model::Dynamics;
 use super::option::{Described, Group, Opt};
+use crate::element::Quadrature;
 
 /// The value of -hardening_file that means the table compiled into the program.
 pub(crate) const BENCHMARK_TABLE: &str = "benchmark";
@@ -110,8 +111,8 @@ option_table! {
         meaning: "Elements through the thickness.",
         value: |case| case.discretisation.ny,
     }
-    QUADRATURE: Choice<usize> {
-        name: "quadrature", unit: "", default: "2", group: Group::Discretisation, kind: Choice(&[("2", 2), ("3", 3)]),
+    QUADRATURE: Choice<Quadrature> {
+        name: "quadrature", unit: "", default: "2", group: Group::Discretisation, kind: Choice(&[("2", Quadrature::Reduced), ("3", Quadrature::Full)]),
         meaning: "Gauss points per direction in an element; 2 is reduced integration of the quadratic element.",
         value: |case| case.discretisation.quadrature,
     }

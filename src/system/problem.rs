@@ -52,12 +52,12 @@ impl Problem {
             ),
             young_modulus: case.material.young_modulus,
             density,
-            quadrature: if divisions.quadrature == 2 { Quadrature::Reduced } else { Quadrature::Full },
+            quadrature: divisions.quadrature,
             contact_samples: contact_rule(divisions.contact_points_per_edge),
             contact_compliance: divisions.contact_compliance,
             die: die(die_radius, die_shoulder_radius, sheet.half_length()),
             punch: punch(punch_radius, sheet.thickness, loading.stroke),
-            motion: PunchMotion { stroke: loading.stroke, unload_fraction: loading.unload_fraction, time_load: loading.time_load, time_unload: loading.time_unload },
+            motion: loading.motion(),
             whole_sheet: sheet.force_factor(),
         }
     }
