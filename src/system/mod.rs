@@ -2,7 +2,7 @@
 //! and what can be measured on a state; keeps the committed history of the material points.
 //! Never: decides on steps, prints, or writes files.
 
-//mod distributed;
+mod distributed;
 mod evaluate;
 mod local;
 mod measure;
@@ -10,11 +10,13 @@ mod numbering;
 mod pattern;
 mod problem;
 mod sample;
+mod seed;
 
-//pub use distributed::{EvaluationFailure, System};
+pub use distributed::{System, SystemError};
 pub use evaluate::ElementFailure;
 pub use local::LocalSystem;
 pub use measure::{Measures, PartialMeasures};
 pub use numbering::{Numbering, UNKNOWNS_PER_POINT};
 pub use problem::Problem;
 pub use sample::{ContactPointSample, FieldSampler};
+pub use seed::Seed;
