@@ -65,6 +65,19 @@ pub enum CaseError {
         /// The operating system's reason.
         reason: String,
     },
+    /// `--options_file`, which PETSc does not take for `-options_file`.
+    #[error("option --options_file is written with one dash: -options_file path")]
+    OptionsFileTwoDashes,
+    /// A line of an option file that PETSc would stop on.
+    #[error("option file {path}, line {line}: {problem}")]
+    OptionsFileLine {
+        /// The path as given.
+        path: String,
+        /// Line from 1.
+        line: usize,
+        /// What is wrong, and what is expected.
+        problem: String,
+    },
     /// The hardening table is refused; what it says names the file and the line.
     #[error("option -hardening_file: {0}")]
     Hardening(#[from] HardeningError),
@@ -96,8 +109,9 @@ pub enum CaseError {
     },
     /// The sheet does not reach the flat of the die. Lengths in mm.
     #[error(
-        "the sheet falls into the die: half of -sheet_length is {half_length} mm and the die's flat begins at \
-         {die_edge} mm (-die_radius + -die_shoulder_radius); give a -sheet_length above {least_length} mm"
+        "the sheet does not rest on the die: half of -sheet_length is {half_length} mm and the die's flat begins at \
+         {die_edge} mm (-die_radius + -die_shoulder_radius); give a -sheet_length above {least_length} mm, which leaves \
+         a thickness to spare at each end"
     )]
     SheetTooShort {
         /// Half length of the sheet.

@@ -129,7 +129,7 @@ option_table! {
     }
     DT_INITIAL: Real {
         name: "dt_initial", unit: "ms", default: "1", group: Group::Stepping, kind: Real::positive(1e9),
-        meaning: "First time step, and the first one after the punch turns.",
+        meaning: "First time step.",
         value: |case| case.stepping.dt_initial,
     }
     DT_MIN: Real {
@@ -149,7 +149,7 @@ option_table! {
     }
     NEWTON_TOLERANCE: Real {
         name: "newton_tolerance", unit: "mm", default: "1e-9", group: Group::Stepping, kind: Real::positive(1e-3),
-        meaning: "A solve has converged when the norm of the scaled residual (forces divided by Young's modulus) is below.",
+        meaning: "Newton stops when the norm of the scaled residual (forces divided by Young's modulus) is below this.",
         value: |case| case.stepping.newton_tolerance,
     }
     NEWTON_MAX_ITERATIONS: Integer {

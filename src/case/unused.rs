@@ -68,7 +68,7 @@ const PETSC_NAMES: &[&str] = &[
 ];
 
 /// From this similarity on (1 is equal), a name is taken for a misspelt one of ours even if it looks like PETSc's.
-const NEAR: f64 = 0.75;
+const NEAR: f64 = 0.8;
 
 /// Sorts options that nobody read (name without the dash, value) into misspelt ones and PETSc's own.
 ///
@@ -79,11 +79,12 @@ pub fn check_unused(unused: &[(String, Option<String>)]) -> (Vec<CaseError>, Vec
     for (option, value) in unused {
         let given = option.trim_start_matches('-');
         let name = normalised(given);
-        let nearest = nearest(&name);
-        let known = TABLE.iter().any(|ours| ours.name() == name);
+        let known = TABLE
+            .iter()
+            .any(|ours| ours.name().eq_ignore_ascii_case(given));
         let petsc = PETSC_NAMES.iter().any(|start| name.starts_with(start));
-        let misspelt = nearest.is_some_and(|(_, similarity)| similarity >= NEAR);
-        if known && !given.contains('=') || petsc && !misspelt {
+        let nearest = nearest(&name);
+        if known || petsc && nearest.similarity < NEAR {
             warnings.push(Warning {
                 option: given.to_owned(),
                 value: value.clone(),
@@ -91,9 +92,11 @@ pub fn check_unused(unused: &[(String, Option<String>)]) -> (Vec<CaseError>, Vec
         } else {
             errors.push(CaseError::UnknownOption {
                 given: given.to_owned(),
-                nearest: nearest.map(|(ours, _)| in_words(ours)).unwrap_or_default(),
+                nearest: nearest.in_words,
                 hint: if given.contains('=') {
                     "; name and value are separated by a space"
+                } else if nearest.similarity < NEAR {
+                    "; -help lists all"
                 } else {
                     ""
                 },
@@ -113,22 +116,44 @@ fn normalised(given: &str) -> String {
         .replace('-', "_")
 }
 
-/// The option of ours that is most like the name, and how like it is. Options that begin with the same word come first:
-/// who writes `contact_stiffness` means something about contact.
-fn nearest(name: &str) -> Option<(&'static dyn Described, f64)> {
+struct Nearest {
+    in_words: String,
+    similarity: f64,
+}
+
+/// The option that is most like the name, and how like it is. Options that begin with the same word come first: who writes
+/// `contact_stiffness` means something about contact. `-options_file` is PETSc's, but a run without its file is another run.
+fn nearest(name: &str) -> Nearest {
     let same_word = TABLE
         .iter()
         .any(|ours| first_word(ours.name()) == first_word(name));
-    TABLE
+    let ours = TABLE
         .iter()
         .filter(|ours| !same_word || first_word(ours.name()) == first_word(name))
-        .map(|ours| {
-            (
-                *ours,
-                strsim::normalized_damerau_levenshtein(ours.name(), name),
-            )
-        })
-        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|ours| Nearest {
+            in_words: in_words(*ours),
+            similarity: similarity(ours.name(), name),
+        });
+    let file = Nearest {
+        in_words: "-options_file (path of an option file)".to_owned(),
+        similarity: similarity("options_file", name),
+    };
+    let none = Nearest {
+        in_words: String::new(),
+        similarity: f64::NEG_INFINITY,
+    };
+    let first = if file.similarity >= NEAR { file } else { none };
+    ours.fold(first, |best, next| {
+        if next.similarity > best.similarity {
+            next
+        } else {
+            best
+        }
+    })
+}
+
+fn similarity(a: &str, b: &str) -> f64 {
+    strsim::normalized_damerau_levenshtein(a, b)
 }
 
 fn first_word(name: &str) -> &str {
