@@ -10,6 +10,7 @@ use std::process::Command;
 use hdf5::{File, H5Type};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
+use ssnp155::output::plot::{DeformedElement, gather_elements};
 use ssnp155::output::{
     ContactFile, ContactSample, FieldSample, History, OutputDir, OutputError, SheetFile, SheetPart,
     StepRecord, ToolsFile,
@@ -134,6 +135,18 @@ fn worker() {
         SheetFile::create("/nowhere/at/all/fields.vtkhdf", &comm, &part).err(),
         Some(OutputError::Hdf5 { .. })
     ));
+    let samples: Vec<FieldSample> = part.coordinates.iter().map(|&at| sample(at, 2)).collect();
+    let all = gather_elements(&comm, &DeformedElement::of(&part, &samples));
+    if comm.rank() == 0 {
+        let corners: Vec<f64> = all.iter().map(|element| element.nodes[0][0]).collect();
+        assert_eq!(corners, [0.2, 1.2, 2.2, 3.2]);
+        assert!(
+            all.iter()
+                .all(|element| (element.plastic_strain - 2e-3).abs() < 1e-15)
+        );
+    } else {
+        assert!(all.is_empty());
+    }
     if std::env::var_os(KILL).is_some() {
         std::process::abort();
     }

@@ -2,6 +2,8 @@
 //!
 //! This is the only file of the package with `unsafe` code. Every function here is called by all ranks of the file.
 
+#![allow(unsafe_code)]
+
 use hdf5::{Dataset, H5Type};
 use hdf5_sys::h5::{herr_t, hsize_t};
 use hdf5_sys::h5d::H5Dwrite;

@@ -86,9 +86,14 @@ impl Certificates {
         self.steps += 1;
         for (worst, (certificate, value, badness)) in self.worst.iter_mut().zip(CERTIFICATES) {
             let value = value(record);
-            // `!(a <= b)` also lets a NaN replace a number, and nothing replace a NaN.
-            let replaces = worst
-                .is_none_or(|old| !old.value.is_nan() && !(badness(value) <= badness(old.value)));
+            let how_bad = |value: f64| {
+                if value.is_nan() {
+                    f64::INFINITY
+                } else {
+                    badness(value)
+                }
+            };
+            let replaces = worst.is_none_or(|old| how_bad(value) > how_bad(old.value));
             if replaces {
                 *worst = Some(WorstValue {
                     certificate,

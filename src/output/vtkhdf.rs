@@ -15,7 +15,8 @@ use hdf5::{Attribute, Dataset, File};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{AsRaw, Communicator};
 
-use super::vtkhdf_layout::{Layout, StepTable, extend, write_values};
+use super::vtkhdf_layout::{Layout, extend, write_values};
+use super::vtkhdf_steps::StepTable;
 use super::{OutputError, agreement::agree};
 
 /// VTK's numbers for the cell types used here.

@@ -64,7 +64,11 @@ impl Canvas<'_> {
             .map_err(|error| error.to_string())
     }
 
+    /// Fills a polygon; one with fewer than three corners is nothing.
     pub(super) fn polygon(&self, points: &[Pixel], color: RGBColor) -> Result<(), String> {
+        if points.len() < 3 {
+            return Ok(());
+        }
         self.area
             .draw(&Polygon::new(fine(points), color.filled()))
             .map_err(|error| error.to_string())
@@ -225,33 +229,6 @@ pub(super) fn text_width(text: &str, size: f64) -> f64 {
     0.53 * size * text.chars().count() as f64
 }
 
-/// The colour map "viridis" (van der Walt and Smith 2015, CC0) at nine places, linear between them; perceptually
-/// uniform and readable in grey and by the colour-blind. `share` runs from 0 to 1.
-pub(super) fn viridis(share: f64) -> RGBColor {
-    const MAP: [[f64; 3]; 9] = [
-        [68.0, 1.0, 84.0],
-        [72.0, 40.0, 120.0],
-        [62.0, 74.0, 137.0],
-        [49.0, 104.0, 142.0],
-        [38.0, 130.0, 142.0],
-        [31.0, 158.0, 137.0],
-        [53.0, 183.0, 121.0],
-        [110.0, 206.0, 88.0],
-        [253.0, 231.0, 37.0],
-    ];
-    let place = if share.is_finite() {
-        share.clamp(0.0, 1.0) * (MAP.len() - 1) as f64
-    } else {
-        0.0
-    };
-    let index = (place.floor() as usize).min(MAP.len() - 2);
-    let [r, g, b] = std::array::from_fn(|channel| {
-        let (low, high) = (MAP[index][channel], MAP[index + 1][channel]);
-        (low + (place - index as f64) * (high - low)).round() as u8
-    });
-    RGBColor(r, g, b)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -268,15 +245,5 @@ mod tests {
         );
         assert_eq!(tick_label(-0.02, (-0.03, 0.11)), "\u{2212}0.02");
         assert_eq!(tick_label(-0.0, (-50.0, 50.0)), "0");
-    }
-
-    #[test]
-    fn the_colour_map_has_its_two_ends_and_stands_nonsense() {
-        assert_eq!(
-            (viridis(0.0), viridis(1.0)),
-            (RGBColor(68, 1, 84), RGBColor(253, 231, 37))
-        );
-        assert_eq!(viridis(f64::NAN), viridis(-3.0));
-        assert_eq!(viridis(7.0), viridis(1.0));
     }
 }

@@ -4,13 +4,17 @@
 //! Never: a window on the screen, or a value that is not in the input.
 
 mod canvas;
+mod color;
+mod elements;
 mod force;
+mod geometry;
 mod shape;
 
 use std::path::Path;
 
+pub use elements::{DeformedElement, gather_elements};
 pub use force::force_svg;
-pub use shape::{DeformedElement, Shape, View, gather_elements, shape_svg};
+pub use shape::{Shape, View, shape_svg};
 
 use super::{OutputError, StepRecord, atomic};
 

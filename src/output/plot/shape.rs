@@ -1,82 +1,31 @@
 //! The deformed sheet between its tools, coloured by equivalent plastic strain.
 
-use std::collections::HashMap;
-
-use mpi::datatype::PartitionMut;
-use mpi::traits::{Communicator, CommunicatorCollectives, Root};
 use plotters::prelude::RGBColor;
 use plotters::style::text_anchor::HPos;
 
-use super::super::{FieldSample, SheetPart};
-use super::canvas::{
-    Canvas, FAINT_INK, Frame, INK, LABEL_SIZE, Pixel, TICK_SIZE, TITLE_SIZE, render,
+use super::canvas::{Canvas, FAINT_INK, Frame, INK, LABEL_SIZE, TITLE_SIZE, render};
+use super::color::{color_bar, viridis};
+use super::elements::DeformedElement;
+use super::geometry::{
+    boundary, clipped, curve, die_outline, grown, outline, punch_outline, region,
 };
-use super::canvas::{tick_label, ticks, viridis};
 
 const DIE: RGBColor = RGBColor(205, 209, 215);
 const PUNCH: RGBColor = RGBColor(222, 225, 230);
+const MARK: RGBColor = RGBColor(190, 24, 60);
 
-/// One 8-node element in its deformed position.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DeformedElement {
-    /// Deformed positions [x, y] of the nodes, mm: corners counter-clockwise, then mid-sides.
-    pub nodes: [[f64; 2]; 8],
-    /// Equivalent plastic strain, one value for the element.
-    pub plastic_strain: f64,
-}
-
-impl DeformedElement {
-    /// The elements of a part, each with the mean plastic strain of its nodes.
-    pub fn of(part: &SheetPart, samples: &[FieldSample]) -> Vec<Self> {
-        let element = |quad: &[usize; 8]| Self {
-            nodes: quad.map(|node| {
-                let ([x, y], [ux, uy]) = (part.coordinates[node], samples[node].displacement);
-                [x + ux, y + uy]
-            }),
-            plastic_strain: quad
-                .map(|node| samples[node].equivalent_plastic_strain)
-                .iter()
-                .sum::<f64>()
-                / 8.0,
-        };
-        part.quads.iter().map(element).collect()
-    }
-}
-
-/// Brings the elements of all ranks to rank 0, in the order of the ranks; the other ranks get none. Collective.
-pub fn gather_elements(comm: &impl Communicator, mine: &[DeformedElement]) -> Vec<DeformedElement> {
-    const SIZE: usize = 17;
-    let flat: Vec<f64> = mine
-        .iter()
-        .flat_map(|e| e.nodes.into_iter().flatten().chain([e.plastic_strain]))
-        .collect();
-    let mut counts = vec![0_i32; comm.size() as usize];
-    comm.all_gather_into(&(flat.len() as i32), &mut counts[..]);
-    let root = comm.process_at_rank(0);
-    if comm.rank() != 0 {
-        root.gather_varcount_into(&flat[..]);
-        return Vec::new();
-    }
-    let starts: Vec<i32> = counts
-        .iter()
-        .scan(0, |end, count| Some(std::mem::replace(end, *end + count)))
-        .collect();
-    let mut all = vec![0.0; counts.iter().sum::<i32>() as usize];
-    root.gather_varcount_into_root(
-        &flat[..],
-        &mut PartitionMut::new(&mut all[..], counts, starts),
-    );
-    let element = |values: &[f64]| DeformedElement {
-        nodes: std::array::from_fn(|node| [values[2 * node], values[2 * node + 1]]),
-        plastic_strain: values[SIZE - 1],
-    };
-    all.chunks_exact(SIZE).map(element).collect()
-}
+/// Side of the close-up, mm: wide enough for the gap on both sides of a sheet of 1 mm.
+const CLOSE_UP_SIDE: f64 = 5.0;
+/// Height of the lines above the frames and space below them, pixels.
+const TOP: f64 = 82.0;
+const BELOW: f64 = 62.0;
+const LEFT: f64 = 78.0;
 
 /// What the figure shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum View {
-    /// The whole sheet: the half model and its mirror image.
+    /// The whole sheet (the half model and its mirror image), and beside it a close-up of the place with the largest
+    /// plastic strain.
     Whole,
     /// A rectangle [x from, x to, y from, y to], mm.
     Window([f64; 4]),
@@ -106,119 +55,189 @@ pub struct Shape<'a> {
 /// # Errors
 /// A sentence, if there is nothing to draw or the drawing fails.
 pub fn shape_svg(shape: &Shape) -> Result<String, String> {
-    let frame = frame(shape)?;
-    let largest = shape
-        .elements
-        .iter()
-        .map(|element| element.plastic_strain)
-        .fold(0.0, f64::max);
+    if shape.elements.is_empty()
+        || !shape
+            .elements
+            .iter()
+            .flat_map(|e| e.nodes)
+            .flatten()
+            .all(f64::is_finite)
+    {
+        return Err("there are no elements, or some of their positions are not finite".into());
+    }
+    // Before anything yields all are alike: then the element nearest to the axis.
+    let most = shape.elements.iter().max_by(|a, b| {
+        let strain = a.plastic_strain.total_cmp(&b.plastic_strain);
+        strain.then(b.nodes[4][0].abs().total_cmp(&a.nodes[4][0].abs()))
+    });
+    let largest = most.map_or(0.0, |element| element.plastic_strain);
     let top = shape.plastic_strain_max.unwrap_or(largest);
     let top = if top > 0.0 { top } else { 1e-3 };
-    render(frame.right + 130.0, frame.bottom + 62.0, |canvas| {
+    let main = main_frame(shape)?;
+    let close_up = match (shape.view, most) {
+        (View::Whole, Some(element)) => Some(close_up_frame(element, &main)),
+        _ => None,
+    };
+    let right = close_up.map_or(main.right, |frame| frame.right);
+    render(right + 130.0, main.bottom + BELOW, |canvas| {
         canvas.text(
-            (frame.left, 28.0),
+            (LEFT, 28.0),
             shape.title,
             TITLE_SIZE,
             INK,
             HPos::Left,
             false,
         )?;
-        frame.grid(canvas)?;
-        tool(canvas, &frame, &die_region(shape.die, &frame), DIE)?;
-        tool(
-            canvas,
-            &frame,
-            &punch_region(shape.punch, shape.stroke_mm, &frame),
-            PUNCH,
-        )?;
-        elements(canvas, &frame, shape.elements, top)?;
-        frame.axes(canvas, "x in mm", "y in mm")?;
-        color_bar(canvas, &frame, top)
+        main.grid(canvas)?;
+        scene(canvas, &main, shape, top)?;
+        main.axes(canvas, "x in mm", "y in mm")?;
+        if let Some(frame) = close_up {
+            captions(canvas, &main, &frame, shape)?;
+            scene(canvas, &frame, shape, top)?;
+            mark(canvas, &frame, &frame)?;
+            mark(canvas, &main, &frame)?;
+        }
+        color_bar(canvas, right, &main, top)
     })
 }
 
 /// The part of the plane shown, at the same scale in both directions.
-fn frame(shape: &Shape) -> Result<Frame, String> {
+fn main_frame(shape: &Shape) -> Result<Frame, String> {
     let nodes = || shape.elements.iter().flat_map(|element| element.nodes);
-    if shape.elements.is_empty() || !nodes().flatten().all(f64::is_finite) {
-        return Err("there are no elements, or some of their positions are not finite".into());
-    }
-    let (x, y) = match shape.view {
-        View::Window([x0, x1, y0, y1]) => ((x0, x1), (y0, y1)),
+    let (x, y, width) = match shape.view {
+        View::Window([x0, x1, y0, y1]) => ((x0, x1), (y0, y1), 860.0),
         View::Whole => {
             let right = nodes().map(|[x, _]| x).fold(60.0, f64::max) + 5.0;
             let low = nodes()
                 .chain(shape.die.iter().copied())
                 .map(|[_, y]| y)
                 .fold(0.0, f64::min);
-            let high = nodes().map(|[_, y]| y).fold(8.0, f64::max);
-            ((-right, right), (low - 6.0, high + 6.0))
+            let high = nodes().map(|[_, y]| y).fold(12.0, f64::max);
+            ((-right, right), (low - 6.0, high + 6.0), 780.0)
         }
     };
     if !(x.1 > x.0 && y.1 > y.0) {
         return Err(format!("the window {x:?} x {y:?} is empty"));
     }
-    let (left, top) = (78.0, 54.0);
-    let scale = f64::min(860.0 / (x.1 - x.0), 700.0 / (y.1 - y.0));
+    let scale = f64::min(width / (x.1 - x.0), 700.0 / (y.1 - y.0));
+    let (right, bottom) = (LEFT + scale * (x.1 - x.0), TOP + scale * (y.1 - y.0));
     Ok(Frame {
-        left,
-        top,
-        right: left + scale * (x.1 - x.0),
-        bottom: top + scale * (y.1 - y.0),
+        left: LEFT,
+        top: TOP,
+        right,
+        bottom,
         x,
         y,
     })
 }
 
-/// Mirror image and half model as one line from left to right.
-fn whole_outline(half: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    half.iter()
-        .rev()
-        .map(|&[x, y]| [-x, y])
-        .chain(half.iter().copied())
-        .collect()
-}
-
-/// Everything below the outline, which goes on level to both sides of the frame.
-fn die_region(half: &[[f64; 2]], frame: &Frame) -> Vec<[f64; 2]> {
-    let mut region = whole_outline(half);
-    if let Some(&[x, y]) = half.last() {
-        let (side, floor) = (
-            x.max(frame.x.0.abs()).max(frame.x.1.abs()) + 1.0,
-            frame.y.0 - 1.0,
-        );
-        region.insert(0, [-side, y]);
-        region.extend([[side, y], [side, floor.min(y)], [-side, floor.min(y)]]);
+/// A square to the right of the main frame, as high as it, around an element.
+fn close_up_frame(element: &DeformedElement, main: &Frame) -> Frame {
+    let mean = |d: usize| element.nodes.iter().map(|node| node[d]).sum::<f64>() / 8.0;
+    let around = |value: f64| (value - 0.5 * CLOSE_UP_SIDE, value + 0.5 * CLOSE_UP_SIDE);
+    let left = main.right + 28.0;
+    let right = left + main.bottom - main.top;
+    Frame {
+        left,
+        right,
+        x: around(mean(0)),
+        y: around(mean(1)),
+        ..*main
     }
-    region
 }
 
-/// Everything above the outline, whose ends go on straight up.
-fn punch_region(half: &[[f64; 2]], stroke: f64, frame: &Frame) -> Vec<[f64; 2]> {
-    let mut region: Vec<_> = whole_outline(half)
-        .into_iter()
-        .map(|[x, y]| [x, y - stroke])
-        .collect();
-    if let (Some(&[left, y]), Some(&[right, _])) = (region.first(), region.last()) {
-        let ceiling = y.max(frame.y.1 + 1.0);
-        region.extend([[right, ceiling], [left, ceiling]]);
+fn captions(canvas: &Canvas, main: &Frame, close_up: &Frame, shape: &Shape) -> Result<(), String> {
+    let above = main.top - 16.0;
+    canvas.text(
+        (main.left, above),
+        "whole sheet",
+        LABEL_SIZE,
+        FAINT_INK,
+        HPos::Left,
+        false,
+    )?;
+    let yields = shape
+        .elements
+        .iter()
+        .any(|element| element.plastic_strain > 0.0);
+    let place = if yields {
+        ", at the largest plastic strain"
+    } else {
+        ""
+    };
+    let caption = format!("close-up, {CLOSE_UP_SIDE:.0} mm wide{place}");
+    canvas.text(
+        (close_up.left, above),
+        &caption,
+        LABEL_SIZE,
+        FAINT_INK,
+        HPos::Left,
+        false,
+    )?;
+    if !shape.die.is_empty() {
+        let corner = (main.left + 14.0, main.bottom - 16.0);
+        canvas.text(corner, "die", LABEL_SIZE, FAINT_INK, HPos::Left, false)?;
     }
-    region
+    let tip = shape
+        .punch
+        .first()
+        .map_or(f64::INFINITY, |[_, y]| y - shape.stroke_mm);
+    let (middle, down) = main.at(0.0, tip);
+    if down > main.top + 34.0 {
+        canvas.text(
+            (middle, main.top + 16.0),
+            "punch",
+            LABEL_SIZE,
+            FAINT_INK,
+            HPos::Center,
+            false,
+        )?;
+    }
+    Ok(())
 }
 
+/// A rectangle in `frame` around what `seen` shows.
+fn mark(canvas: &Canvas, frame: &Frame, seen: &Frame) -> Result<(), String> {
+    let (x, y) = (seen.x, seen.y);
+    let corners = [(x.0, y.0), (x.1, y.0), (x.1, y.1), (x.0, y.1), (x.0, y.0)];
+    canvas.line(&corners.map(|(x, y)| frame.at(x, y)), MARK, 1.2)
+}
+
+fn scene(canvas: &Canvas, frame: &Frame, shape: &Shape, top: f64) -> Result<(), String> {
+    let die = die_outline(shape.die, frame);
+    let punch = punch_outline(shape.punch, shape.stroke_mm, frame);
+    tool(canvas, frame, &die, frame.y.0 - 1.0, DIE)?;
+    tool(canvas, frame, &punch, frame.y.1 + 1.0, PUNCH)?;
+    elements(canvas, frame, shape.elements, top)
+}
+
+/// A tool fills everything between its outline and `level`.
 fn tool(
     canvas: &Canvas,
     frame: &Frame,
-    region: &[[f64; 2]],
+    line: &[[f64; 2]],
+    level: f64,
     color: RGBColor,
 ) -> Result<(), String> {
-    let mut pixels = clipped(region, frame);
-    if pixels.len() < 3 {
-        return Ok(());
+    canvas.polygon(&clipped(&region(line, level), frame), color)?;
+    polyline(canvas, frame, line, FAINT_INK, 1.2)
+}
+
+/// A line, cut to the frame piece by piece.
+fn polyline(
+    canvas: &Canvas,
+    frame: &Frame,
+    line: &[[f64; 2]],
+    color: RGBColor,
+    width: f64,
+) -> Result<(), String> {
+    for piece in line.windows(2) {
+        let pixels = clipped(piece, frame);
+        if pixels.len() > 1 {
+            canvas.line(&pixels, color, width)?;
+        }
     }
-    canvas.polygon(&pixels, color)?;
-    pixels.push(pixels[0]);
-    canvas.line(&pixels, FAINT_INK, 1.2)
+    Ok(())
 }
 
 fn elements(
@@ -227,177 +246,45 @@ fn elements(
     elements: &[DeformedElement],
     top: f64,
 ) -> Result<(), String> {
-    let size = |e: &DeformedElement| {
-        pixels_between(frame, e.nodes[0], e.nodes[1])
-            .min(pixels_between(frame, e.nodes[0], e.nodes[3]))
-    };
+    let scale = (frame.right - frame.left) / (frame.x.1 - frame.x.0);
+    let length = |a: [f64; 2], b: [f64; 2]| scale * (a[0] - b[0]).hypot(a[1] - b[1]);
+    let size =
+        |e: &DeformedElement| length(e.nodes[0], e.nodes[1]).min(length(e.nodes[0], e.nodes[3]));
     let edges_visible = elements.iter().map(size).sum::<f64>() > 7.0 * elements.len() as f64;
-    let mirrored = |e: &DeformedElement| e.nodes.map(|[x, y]| [-x, y]);
-    let all = elements
+    for (element, side) in elements
         .iter()
-        .flat_map(|e| [(e.nodes, e.plastic_strain), (mirrored(e), e.plastic_strain)]);
-    for (nodes, strain) in all {
-        // Finer polylines where they can be seen.
-        let mut pixels = clipped(&outline(&nodes, if edges_visible { 6 } else { 2 }), frame);
-        if pixels.len() < 3 {
-            continue;
-        }
-        let color = viridis(strain / top);
-        canvas.polygon(&pixels, color)?;
-        pixels.push(pixels[0]);
-        // Without its own edge in the same colour, the background would shine through between neighbours.
-        let (line, width) = if edges_visible {
-            (INK, 0.5)
+        .flat_map(|element| [(element, 1.0), (element, -1.0)])
+    {
+        let nodes = element.nodes.map(|[x, y]| [side * x, y]);
+        let color = viridis(element.plastic_strain / top);
+        if edges_visible {
+            let mut line = outline(&nodes, 6);
+            canvas.polygon(&clipped(&grown(&line, 0.2 / scale), frame), color)?;
+            line.push(line[0]);
+            polyline(canvas, frame, &line, INK, 0.5)?;
         } else {
-            (color, 0.4)
-        };
-        canvas.line(&pixels, line, width)?;
-    }
-    for edge in boundary(elements) {
-        for side in [1.0, -1.0] {
-            let inside = |&[x, y]: &[f64; 2]| {
-                x >= frame.x.0 && x <= frame.x.1 && y >= frame.y.0 && y <= frame.y.1
-            };
-            let edge = edge.map(|[x, y]| [side * x, y]);
-            if edge.iter().all(inside) {
-                let pixels: Vec<_> = curve(&edge, 6)
-                    .iter()
-                    .map(|&[x, y]| frame.at(x, y))
-                    .collect();
-                canvas.line(&pixels, INK, if edges_visible { 1.4 } else { 0.8 })?;
-            }
+            // A little larger than they are: otherwise the background shines through between neighbours.
+            canvas.polygon(
+                &clipped(&grown(&outline(&nodes, 1), 0.3 / scale), frame),
+                color,
+            )?;
         }
     }
-    Ok(())
-}
-
-fn pixels_between(frame: &Frame, a: [f64; 2], b: [f64; 2]) -> f64 {
-    let (a, b) = (frame.at(a[0], a[1]), frame.at(b[0], b[1]));
-    (a.0 - b.0).hypot(a.1 - b.1)
-}
-
-/// The edges of an element: corner, mid-side, corner.
-fn edges(nodes: &[[f64; 2]; 8]) -> [[[f64; 2]; 3]; 4] {
-    std::array::from_fn(|side| [nodes[side], nodes[side + 4], nodes[(side + 1) % 4]])
-}
-
-/// A quadratic edge in `pieces` straight pieces, both ends included.
-fn curve([a, m, b]: &[[f64; 2]; 3], pieces: usize) -> Vec<[f64; 2]> {
-    let point = |index: usize| {
-        let s = 2.0 * index as f64 / pieces as f64 - 1.0;
-        std::array::from_fn(|d| {
-            0.5 * s * (s - 1.0) * a[d] + (1.0 - s * s) * m[d] + 0.5 * s * (s + 1.0) * b[d]
-        })
-    };
-    (0..=pieces).map(point).collect()
-}
-
-fn outline(nodes: &[[f64; 2]; 8], pieces: usize) -> Vec<[f64; 2]> {
-    edges(nodes)
+    for (edge, side) in boundary(elements)
         .iter()
-        .flat_map(|edge| curve(edge, pieces).into_iter().take(pieces))
-        .collect()
-}
-
-/// Edges that belong to one element only, without those on the axis of symmetry. Parts of different ranks do not share
-/// node numbers, so edges are known by the place of their mid-side.
-fn boundary(elements: &[DeformedElement]) -> Vec<[[f64; 2]; 3]> {
-    let place = |edge: &[[f64; 2]; 3]| edge[1].map(|value| (value * 1e6).round() as i64);
-    let mut seen: HashMap<[i64; 2], usize> = HashMap::new();
-    let all: Vec<_> = elements
-        .iter()
-        .flat_map(|element| edges(&element.nodes))
-        .collect();
-    all.iter()
-        .for_each(|edge| *seen.entry(place(edge)).or_default() += 1);
-    let outer =
-        |edge: &[[f64; 2]; 3]| seen.get(&place(edge)) == Some(&1) && edge[1][0].abs() > 1e-6;
-    all.into_iter().filter(outer).collect()
-}
-
-/// The polygon cut to the frame (Sutherland and Hodgman 1974), in pixels.
-fn clipped(polygon: &[[f64; 2]], frame: &Frame) -> Vec<Pixel> {
-    let mut points = polygon.to_vec();
-    for (axis, limit, keep_above) in [
-        (0, frame.x.0, true),
-        (0, frame.x.1, false),
-        (1, frame.y.0, true),
-        (1, frame.y.1, false),
-    ] {
-        let inside = |point: &[f64; 2]| {
-            if keep_above {
-                point[axis] >= limit
-            } else {
-                point[axis] <= limit
-            }
-        };
-        let mut kept = Vec::with_capacity(points.len() + 2);
-        for (index, point) in points.iter().enumerate() {
-            let before = points[(index + points.len() - 1) % points.len()];
-            if inside(point) != inside(&before) {
-                let share = (limit - before[axis]) / (point[axis] - before[axis]);
-                kept.push(std::array::from_fn(|d| {
-                    before[d] + share * (point[d] - before[d])
-                }));
-            }
-            if inside(point) {
-                kept.push(*point);
-            }
-        }
-        points = kept;
-    }
-    points.iter().map(|&[x, y]| frame.at(x, y)).collect()
-}
-
-fn color_bar(canvas: &Canvas, plot: &Frame, top: f64) -> Result<(), String> {
-    const STRIPES: usize = 128;
-    let (left, right) = (plot.right + 24.0, plot.right + 40.0);
-    let bar = Frame {
-        left,
-        right,
-        top: plot.top,
-        bottom: plot.bottom,
-        x: (0.0, 1.0),
-        y: (0.0, top),
-    };
-    for stripe in 0..STRIPES {
-        let from = top * stripe as f64 / STRIPES as f64;
-        // Each stripe runs to the top: the next one covers what is too much, and no seam is left.
-        let corners = [
-            bar.at(0.0, from),
-            bar.at(1.0, from),
-            bar.at(1.0, top),
-            bar.at(0.0, top),
-        ];
-        canvas.polygon(&corners, viridis((stripe as f64 + 0.5) / STRIPES as f64))?;
-    }
-    let corners = [
-        bar.at(0.0, 0.0),
-        bar.at(1.0, 0.0),
-        bar.at(1.0, top),
-        bar.at(0.0, top),
-        bar.at(0.0, 0.0),
-    ];
-    canvas.line(&corners, FAINT_INK, 1.0)?;
-    for value in ticks(bar.y, 7) {
-        let (_, up) = bar.at(0.0, value);
-        canvas.line(&[(right, up), (right + 4.0, up)], FAINT_INK, 1.0)?;
-        canvas.text(
-            (right + 8.0, up),
-            &tick_label(value, bar.y),
-            TICK_SIZE,
+        .flat_map(|edge| [(edge, 1.0), (edge, -1.0)])
+    {
+        let line = curve(
+            &edge.map(|[x, y]| [side * x, y]),
+            if edges_visible { 6 } else { 1 },
+        );
+        polyline(
+            canvas,
+            frame,
+            &line,
             INK,
-            HPos::Left,
-            false,
+            if edges_visible { 1.4 } else { 0.7 },
         )?;
     }
-    let middle = 0.5 * (bar.top + bar.bottom);
-    canvas.text(
-        (right + 62.0, middle),
-        "equivalent plastic strain",
-        LABEL_SIZE,
-        INK,
-        HPos::Center,
-        true,
-    )
+    Ok(())
 }
