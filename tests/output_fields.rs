@@ -131,10 +131,15 @@ fn worker() {
         "rank {}: {error}",
         comm.rank()
     );
-    assert!(matches!(
-        SheetFile::create("/nowhere/at/all/fields.vtkhdf", &comm, &part).err(),
-        Some(OutputError::Hdf5 { .. })
-    ));
+    let error = SheetFile::create("/nowhere/at/all/fields.vtkhdf", &comm, &part)
+        .err()
+        .unwrap();
+    assert!(
+        matches!(error, OutputError::Hdf5 { .. }),
+        "rank {}: {error}",
+        comm.rank()
+    );
+    println!("as expected: {error}");
     let samples: Vec<FieldSample> = part.coordinates.iter().map(|&at| sample(at, 2)).collect();
     let all = gather_elements(&comm, &DeformedElement::of(&part, &samples));
     if comm.rank() == 0 {
