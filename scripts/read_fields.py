@@ -95,6 +95,10 @@ class File:
         reader.UpdateInformation()
         information = reader.GetOutputInformation(0)
         times = information.Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS()) or ()
+        if not times and reader.GetNumberOfSteps() == 1:
+            # VTK takes a single step for a file without time.
+            reader.Update()
+            times = (reader.GetTimeValue(),)
         if not times:
             return self.complain("there is no time step")
         if any(b <= a for a, b in zip(times, times[1:])):

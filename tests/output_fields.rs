@@ -10,9 +10,10 @@ use std::process::Command;
 use hdf5::{File, H5Type};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
+use ssnp155::output::plot::{DeformedElement, gather_elements};
 use ssnp155::output::{
-    ContactFile, ContactSample, FieldSample, History, OutputDir, OutputError, SheetFile, SheetPart, StepRecord,
-    ToolsFile,
+    ContactFile, ContactSample, FieldSample, History, OutputDir, OutputError, SheetFile, SheetPart,
+    StepRecord, ToolsFile,
 };
 
 const STEPS: usize = 3;
@@ -21,11 +22,16 @@ const KILL: &str = "OUTPUT_FIELDS_KILL";
 
 /// A strip of `count` square elements of 1 mm that starts at x = `first` mm.
 fn strip(first: usize, count: usize, rank: i32) -> SheetPart {
-    let mut part = SheetPart { rank, ..SheetPart::default() };
+    let mut part = SheetPart {
+        rank,
+        ..SheetPart::default()
+    };
     for element in first..first + count {
         let (x, base) = (element as f64, part.coordinates.len());
-        part.coordinates.extend([[x, 0.0], [x + 1.0, 0.0], [x + 1.0, 1.0], [x, 1.0]]);
-        part.coordinates.extend([[x + 0.5, 0.0], [x + 1.0, 0.5], [x + 0.5, 1.0], [x, 0.5]]);
+        part.coordinates
+            .extend([[x, 0.0], [x + 1.0, 0.0], [x + 1.0, 1.0], [x, 1.0]]);
+        part.coordinates
+            .extend([[x + 0.5, 0.0], [x + 1.0, 0.5], [x + 0.5, 1.0], [x, 0.5]]);
         part.quads.push(std::array::from_fn(|node| base + node));
     }
     part
@@ -59,7 +65,9 @@ fn sample([x, y]: [f64; 2], step: usize) -> FieldSample {
 #[test]
 #[ignore = "started under mpirun by the other tests"]
 fn worker() {
-    let Ok(folder) = std::env::var(FOLDER) else { return };
+    let Ok(folder) = std::env::var(FOLDER) else {
+        return;
+    };
     let universe = mpi::initialize().unwrap();
     let comm = universe.world();
     let file_in_the_way = Path::new(&folder).join("taken");
@@ -67,18 +75,32 @@ fn worker() {
         std::fs::write(&file_in_the_way, "").unwrap();
     }
     let refused = OutputDir::create(&file_in_the_way, &comm).unwrap_err();
-    assert_eq!(refused, OutputError::NotAFolder { path: file_in_the_way.clone() }, "rank {}", comm.rank());
+    assert_eq!(
+        refused,
+        OutputError::NotAFolder {
+            path: file_in_the_way.clone()
+        },
+        "rank {}",
+        comm.rank()
+    );
 
     let out = OutputDir::create(Path::new(&folder).join("new/run"), &comm).unwrap();
     let part = part_of(&comm);
     let mut sheet = SheetFile::create(out.fields(), &comm, &part).unwrap();
-    let (die, punch) = ([[0.0, -29.0], [25.0, -4.0], [60.0, 0.0]], [[0.0, 1.0], [23.5, 24.5]]);
+    let (die, punch) = (
+        [[0.0, -29.0], [25.0, -4.0], [60.0, 0.0]],
+        [[0.0, 1.0], [23.5, 24.5]],
+    );
     let mut tools = ToolsFile::create(out.tools(), &comm, &die, &punch).unwrap();
     let mut contact = ContactFile::create(out.contact(), &comm, &part.coordinates).unwrap();
     let mut history = (comm.rank() == 0).then(|| History::create(out.history()).unwrap());
     for step in 0..STEPS {
         let t_ms = 2.5 * step as f64;
-        let samples: Vec<FieldSample> = part.coordinates.iter().map(|&at| sample(at, step)).collect();
+        let samples: Vec<FieldSample> = part
+            .coordinates
+            .iter()
+            .map(|&at| sample(at, step))
+            .collect();
         let points: Vec<ContactSample> = samples
             .iter()
             .map(|s| ContactSample {
@@ -93,30 +115,70 @@ fn worker() {
         tools.write(t_ms, t_ms).unwrap();
         contact.write(t_ms, &points).unwrap();
         if let Some(history) = &mut history {
-            history.append(&StepRecord { t_ms, ..StepRecord::default() }).unwrap();
+            history
+                .append(&StepRecord {
+                    t_ms,
+                    ..StepRecord::default()
+                })
+                .unwrap();
         }
     }
     // One rank hands over too little: all ranks say so, none waits, and nothing is written.
     let too_few = vec![FieldSample::default(); part.coordinates.len().saturating_sub(1)];
     let error = sheet.write(99.0, &too_few).unwrap_err();
-    assert!(matches!(error, OutputError::Mismatch { .. }), "rank {}: {error}", comm.rank());
-    assert!(matches!(
-        SheetFile::create("/nowhere/at/all/fields.vtkhdf", &comm, &part).err(),
-        Some(OutputError::Hdf5 { .. })
-    ));
+    assert!(
+        matches!(error, OutputError::Mismatch { .. }),
+        "rank {}: {error}",
+        comm.rank()
+    );
+    let error = SheetFile::create("/nowhere/at/all/fields.vtkhdf", &comm, &part)
+        .err()
+        .unwrap();
+    assert!(
+        matches!(error, OutputError::Hdf5 { .. }),
+        "rank {}: {error}",
+        comm.rank()
+    );
+    println!("as expected: {error}");
+    let samples: Vec<FieldSample> = part.coordinates.iter().map(|&at| sample(at, 2)).collect();
+    let all = gather_elements(&comm, &DeformedElement::of(&part, &samples));
+    if comm.rank() == 0 {
+        let corners: Vec<f64> = all.iter().map(|element| element.nodes[0][0]).collect();
+        assert_eq!(corners, [0.2, 1.2, 2.2, 3.2]);
+        assert!(
+            all.iter()
+                .all(|element| (element.plastic_strain - 2e-3).abs() < 1e-15)
+        );
+    } else {
+        assert!(all.is_empty());
+    }
     if std::env::var_os(KILL).is_some() {
         std::process::abort();
     }
 }
 
 fn run_worker(name: &str, ranks: usize, killed: bool) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("ssnp155-fields-{name}-{}", std::process::id()));
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("fields-{name}"));
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
     let mut command = Command::new("mpirun");
-    command.args(["--timeout", "60", "--oversubscribe", "-n", &ranks.to_string()]);
-    command.arg(std::env::current_exe().unwrap()).args(["--ignored", "--exact", "worker", "--nocapture"]);
-    command.env(FOLDER, &folder).env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
+    command.args([
+        "--timeout",
+        "60",
+        "--oversubscribe",
+        "-n",
+        &ranks.to_string(),
+    ]);
+    command.arg(std::env::current_exe().unwrap()).args([
+        "--ignored",
+        "--exact",
+        "worker",
+        "--nocapture",
+    ]);
+    command
+        .env(FOLDER, &folder)
+        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
+        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
     command.env("OMPI_MCA_hwloc_base_binding_policy", "none");
     if killed {
         command.env(KILL, "1");
@@ -129,18 +191,30 @@ fn run_worker(name: &str, ranks: usize, killed: bool) -> PathBuf {
 }
 
 fn read<T: H5Type>(file: &File, name: &str) -> Vec<T> {
-    file.dataset(&format!("VTKHDF/{name}")).unwrap().read_raw().unwrap()
+    file.dataset(&format!("VTKHDF/{name}"))
+        .unwrap()
+        .read_raw()
+        .unwrap()
 }
 
 fn steps_of(file: &File) -> i64 {
-    file.group("VTKHDF/Steps").unwrap().attr("NSteps").unwrap().read_scalar().unwrap()
+    file.group("VTKHDF/Steps")
+        .unwrap()
+        .attr("NSteps")
+        .unwrap()
+        .read_scalar()
+        .unwrap()
 }
 
 /// Everything in the three files against what [`worker`] handed over.
 fn check(out: &Path, ranks: usize) {
     let file = File::open(out.join("fields.vtkhdf")).unwrap();
     assert_eq!(steps_of(&file), STEPS as i64);
-    let expected = if ranks == 1 { vec![32_i64] } else { vec![8, 0, 24] };
+    let expected = if ranks == 1 {
+        vec![32_i64]
+    } else {
+        vec![8, 0, 24]
+    };
     assert_eq!(read::<i64>(&file, "NumberOfPoints"), expected);
     let cells: Vec<i64> = expected.iter().map(|points| points / 8).collect();
     assert_eq!(read::<i64>(&file, "NumberOfCells"), cells);
@@ -149,18 +223,37 @@ fn check(out: &Path, ranks: usize) {
     let owners = if ranks == 1 { [0; 4] } else { [0, 2, 2, 2] };
     assert_eq!(read::<i32>(&file, "CellData/rank"), owners);
     assert_eq!(read::<f64>(&file, "Steps/Values"), [0.0, 2.5, 5.0]);
-    assert_eq!(read::<i64>(&file, "Steps/NumberOfParts"), [ranks as i64; STEPS]);
-    for name in ["PartOffsets", "PointOffsets", "CellOffsets", "ConnectivityIdOffsets", "CellDataOffsets/rank"] {
-        assert_eq!(read::<i64>(&file, &format!("Steps/{name}")), [0; STEPS], "{name}");
+    assert_eq!(
+        read::<i64>(&file, "Steps/NumberOfParts"),
+        [ranks as i64; STEPS]
+    );
+    for name in [
+        "PartOffsets",
+        "PointOffsets",
+        "CellOffsets",
+        "ConnectivityIdOffsets",
+        "CellDataOffsets/rank",
+    ] {
+        assert_eq!(
+            read::<i64>(&file, &format!("Steps/{name}")),
+            [0; STEPS],
+            "{name}"
+        );
     }
-    assert_eq!(read::<i64>(&file, "Steps/PointDataOffsets/stress"), [0, 32, 64]);
+    assert_eq!(
+        read::<i64>(&file, "Steps/PointDataOffsets/stress"),
+        [0, 32, 64]
+    );
 
     let points = read::<f64>(&file, "Points");
     let displacement = read::<f64>(&file, "PointData/displacement");
     let stress = read::<f64>(&file, "PointData/stress");
     let von_mises = read::<f64>(&file, "PointData/von_mises_stress");
     let status = read::<i32>(&file, "PointData/contact_status");
-    assert_eq!((points.len(), von_mises.len(), stress.len()), (3 * 32, STEPS * 32, 6 * STEPS * 32));
+    assert_eq!(
+        (points.len(), von_mises.len(), stress.len()),
+        (3 * 32, STEPS * 32, 6 * STEPS * 32)
+    );
     for step in 0..STEPS {
         for point in 0..32 {
             let expected = sample([points[3 * point], points[3 * point + 1]], step);
@@ -176,14 +269,31 @@ fn check(out: &Path, ranks: usize) {
     assert_eq!(read::<i32>(&tools, "CellData/tool"), [0, 1]);
     let moved = read::<f64>(&tools, "PointData/displacement");
     let down: Vec<f64> = moved.chunks(3).map(|u| u[1]).collect();
-    assert_eq!(down, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -2.5, -2.5, 0.0, 0.0, 0.0, -5.0, -5.0]);
+    assert_eq!(
+        down,
+        [
+            0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -2.5, -2.5, 0.0, 0.0, 0.0, -5.0, -5.0
+        ]
+    );
 
     let contact = File::open(out.join("contact.vtkhdf")).unwrap();
     assert_eq!(read::<u8>(&contact, "Types"), [1; 32]);
-    let (pressure, friction) =
-        (read::<f64>(&contact, "PointData/contact_pressure"), read::<f64>(&contact, "PointData/friction_traction"));
-    assert!(pressure.iter().zip(&friction).all(|(p, t)| *t == 0.1342 * p));
-    assert_eq!(ssnp155::output::history::read(out.join("history.csv")).unwrap().len(), STEPS);
+    let (pressure, friction) = (
+        read::<f64>(&contact, "PointData/contact_pressure"),
+        read::<f64>(&contact, "PointData/friction_traction"),
+    );
+    assert!(
+        pressure
+            .iter()
+            .zip(&friction)
+            .all(|(p, t)| *t == 0.1342 * p)
+    );
+    assert_eq!(
+        ssnp155::output::history::read(out.join("history.csv"))
+            .unwrap()
+            .len(),
+        STEPS
+    );
 }
 
 #[test]

@@ -6,7 +6,10 @@ use super::OutputError;
 
 /// Collective over `comm`. Returns this rank's value if every rank succeeded; otherwise every rank returns the
 /// error of the lowest rank that failed, so that no rank goes on alone into a collective call.
-pub(crate) fn agree<T>(comm: &impl Communicator, mine: Result<T, OutputError>) -> Result<T, OutputError> {
+pub(crate) fn agree<T>(
+    comm: &impl Communicator,
+    mine: Result<T, OutputError>,
+) -> Result<T, OutputError> {
     let vote = if mine.is_err() { comm.rank() } else { i32::MAX };
     let mut lowest = i32::MAX;
     comm.all_reduce_into(&vote, &mut lowest, mpi::collective::SystemOperation::min());
@@ -22,8 +25,10 @@ pub(crate) fn agree<T>(comm: &impl Communicator, mine: Result<T, OutputError>) -
     root.broadcast_into(&mut length);
     text.resize(length as usize, 0);
     root.broadcast_into(&mut text[..]);
-    Err(serde_json::from_slice(&text).unwrap_or_else(|error| OutputError::Read {
-        path: format!("the error message of rank {lowest}").into(),
-        reason: error.to_string(),
-    }))
+    Err(
+        serde_json::from_slice(&text).unwrap_or_else(|error| OutputError::Read {
+            path: format!("the error message of rank {lowest}").into(),
+            reason: error.to_string(),
+        }),
+    )
 }

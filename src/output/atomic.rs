@@ -45,6 +45,9 @@ mod tests {
     #[test]
     fn a_missing_folder_is_named() {
         let error = write(Path::new("/nowhere/at/all/x.svg"), b"").unwrap_err();
-        assert!(error.to_string().contains("/nowhere/at/all/x.svg"), "{error}");
+        assert!(
+            error.to_string().contains("/nowhere/at/all/x.svg"),
+            "{error}"
+        );
     }
 }

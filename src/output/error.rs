@@ -75,18 +75,31 @@ pub enum OutputError {
 
 impl OutputError {
     pub(crate) fn write(path: &Path, reason: impl ToString) -> Self {
-        Self::Write { path: path.into(), reason: reason.to_string() }
+        Self::Write {
+            path: path.into(),
+            reason: reason.to_string(),
+        }
     }
 
     pub(crate) fn read(path: &Path, reason: impl ToString) -> Self {
-        Self::Read { path: path.into(), reason: reason.to_string() }
+        Self::Read {
+            path: path.into(),
+            reason: reason.to_string(),
+        }
     }
 
     pub(crate) fn hdf5(path: &Path, doing: impl ToString, reason: impl ToString) -> Self {
-        Self::Hdf5 { path: path.into(), doing: doing.to_string(), reason: reason.to_string() }
+        Self::Hdf5 {
+            path: path.into(),
+            doing: doing.to_string(),
+            reason: reason.to_string(),
+        }
     }
 
     pub(crate) fn mismatch(path: &Path, reason: impl ToString) -> Self {
-        Self::Mismatch { path: path.into(), reason: reason.to_string() }
+        Self::Mismatch {
+            path: path.into(),
+            reason: reason.to_string(),
+        }
     }
 }

@@ -11,11 +11,21 @@ use super::OutputError;
 use super::vtkhdf::{ArraySpec, CellType, Kind, Part, TimeSeries, Values};
 
 const fn real(name: &'static str, unit: &'static str, components: usize) -> ArraySpec {
-    ArraySpec { name, unit, components, kind: Kind::F64 }
+    ArraySpec {
+        name,
+        unit,
+        components,
+        kind: Kind::F64,
+    }
 }
 
 const fn integer(name: &'static str) -> ArraySpec {
-    ArraySpec { name, unit: "1", components: 1, kind: Kind::I32 }
+    ArraySpec {
+        name,
+        unit: "1",
+        components: 1,
+        kind: Kind::I32,
+    }
 }
 
 const DISPLACEMENT: ArraySpec = real("displacement", "mm", 3);
@@ -39,8 +49,13 @@ pub const SHEET_ARRAYS: [ArraySpec; 7] = [
 pub const TOOL_ARRAYS: [ArraySpec; 1] = [DISPLACEMENT];
 
 /// Point arrays of `contact.vtkhdf`, in this order.
-pub const CONTACT_ARRAYS: [ArraySpec; 5] =
-    [DISPLACEMENT, CONTACT_PRESSURE, real("friction_traction", "MPa", 1), GAP, CONTACT_STATUS];
+pub const CONTACT_ARRAYS: [ArraySpec; 5] = [
+    DISPLACEMENT,
+    CONTACT_PRESSURE,
+    real("friction_traction", "MPa", 1),
+    GAP,
+    CONTACT_STATUS,
+];
 
 /// One rank's part of the sheet mesh. Nodes shared by two parts appear in both.
 #[derive(Debug, Clone, Default)]
@@ -98,15 +113,32 @@ impl SheetFile {
     ///
     /// # Errors
     /// As [`TimeSeries::create`].
-    pub fn create(path: impl AsRef<Path>, comm: &impl Communicator, sheet: &SheetPart) -> Result<Self, OutputError> {
+    pub fn create(
+        path: impl AsRef<Path>,
+        comm: &impl Communicator,
+        sheet: &SheetPart,
+    ) -> Result<Self, OutputError> {
         let part = Part {
             points: in_space(&sheet.coordinates),
             cell_type: CellType::QuadraticQuad,
-            connectivity: sheet.quads.iter().flatten().map(|&node| node as i64).collect(),
-            offsets: (0..=sheet.quads.len() as i64).map(|cell| 8 * cell).collect(),
+            connectivity: sheet
+                .quads
+                .iter()
+                .flatten()
+                .map(|&node| node as i64)
+                .collect(),
+            offsets: (0..=sheet.quads.len() as i64)
+                .map(|cell| 8 * cell)
+                .collect(),
         };
         let rank = vec![sheet.rank; sheet.quads.len()];
-        let series = TimeSeries::create(path, comm, &part, &SHEET_ARRAYS, &[(integer("rank"), Values::I32(&rank))])?;
+        let series = TimeSeries::create(
+            path,
+            comm,
+            &part,
+            &SHEET_ARRAYS,
+            &[(integer("rank"), Values::I32(&rank))],
+        )?;
         Ok(Self { series })
     }
 
@@ -156,7 +188,11 @@ impl ToolsFile {
         punch: &[[f64; 2]],
     ) -> Result<Self, OutputError> {
         let writes = comm.rank() == 0;
-        let (die, punch) = if writes { (die, punch) } else { (&[][..], &[][..]) };
+        let (die, punch) = if writes {
+            (die, punch)
+        } else {
+            (&[][..], &[][..])
+        };
         let points: Vec<[f64; 2]> = die.iter().chain(punch).copied().collect();
         let ends = [0, die.len() as i64, points.len() as i64];
         let part = Part {
@@ -166,8 +202,18 @@ impl ToolsFile {
             offsets: if writes { ends.to_vec() } else { vec![0] },
         };
         let tool: &[i32] = if writes { &[0, 1] } else { &[] };
-        let series = TimeSeries::create(path, comm, &part, &TOOL_ARRAYS, &[(integer("tool"), Values::I32(tool))])?;
-        Ok(Self { series, die_points: die.len(), punch_points: punch.len() })
+        let series = TimeSeries::create(
+            path,
+            comm,
+            &part,
+            &TOOL_ARRAYS,
+            &[(integer("tool"), Values::I32(tool))],
+        )?;
+        Ok(Self {
+            series,
+            die_points: die.len(),
+            punch_points: punch.len(),
+        })
     }
 
     /// Adds the state at `t_ms` with the punch moved down by `stroke_mm`.
@@ -192,7 +238,11 @@ impl ContactFile {
     ///
     /// # Errors
     /// As [`TimeSeries::create`].
-    pub fn create(path: impl AsRef<Path>, comm: &impl Communicator, points: &[[f64; 2]]) -> Result<Self, OutputError> {
+    pub fn create(
+        path: impl AsRef<Path>,
+        comm: &impl Communicator,
+        points: &[[f64; 2]],
+    ) -> Result<Self, OutputError> {
         let count = points.len() as i64;
         let part = Part {
             points: in_space(points),
@@ -200,7 +250,9 @@ impl ContactFile {
             connectivity: (0..count).collect(),
             offsets: (0..=count).collect(),
         };
-        Ok(Self { series: TimeSeries::create(path, comm, &part, &CONTACT_ARRAYS, &[])? })
+        Ok(Self {
+            series: TimeSeries::create(path, comm, &part, &CONTACT_ARRAYS, &[])?,
+        })
     }
 
     /// Adds the state at `t_ms`, one sample for each of this rank's points.
@@ -211,7 +263,9 @@ impl ContactFile {
         self.series.append(
             t_ms,
             &[
-                Values::F64(&gather(samples, |s| [s.displacement[0], s.displacement[1], 0.0])),
+                Values::F64(&gather(samples, |s| {
+                    [s.displacement[0], s.displacement[1], 0.0]
+                })),
                 Values::F64(&gather(samples, |s| [s.contact_pressure])),
                 Values::F64(&gather(samples, |s| [s.friction_traction])),
                 Values::F64(&gather(samples, |s| [s.gap])),

@@ -21,7 +21,11 @@ impl OutputDir {
     /// [`OutputError::NotAFolder`], [`OutputError::CannotCreateFolder`] or [`OutputError::NotWritable`].
     pub fn create(path: impl AsRef<Path>, comm: &impl Communicator) -> Result<Self, OutputError> {
         let path = path.as_ref();
-        let mine = if comm.rank() == 0 { prepare(path) } else { Ok(()) };
+        let mine = if comm.rank() == 0 {
+            prepare(path)
+        } else {
+            Ok(())
+        };
         agree(comm, mine)?;
         Ok(Self { path: path.into() })
     }
@@ -77,13 +81,18 @@ fn prepare(path: &Path) -> Result<(), OutputError> {
     match fs::metadata(path) {
         Ok(found) if !found.is_dir() => return Err(OutputError::NotAFolder { path: path.into() }),
         Ok(_) => {}
-        Err(_) => fs::create_dir_all(path)
-            .map_err(|error| OutputError::CannotCreateFolder { path: path.into(), reason: error.to_string() })?,
+        Err(_) => fs::create_dir_all(path).map_err(|error| OutputError::CannotCreateFolder {
+            path: path.into(),
+            reason: error.to_string(),
+        })?,
     }
     // Permission bits do not tell the truth on every file system: trying does.
     let probe = path.join(format!(".probe-{}", std::process::id()));
     let tried = File::create(&probe).and_then(|_| fs::remove_file(&probe));
-    tried.map_err(|error| OutputError::NotWritable { path: path.into(), reason: error.to_string() })
+    tried.map_err(|error| OutputError::NotWritable {
+        path: path.into(),
+        reason: error.to_string(),
+    })
 }
 
 #[cfg(test)]
@@ -108,15 +117,24 @@ mod tests {
     fn a_file_in_the_way_is_said_so() {
         let file = scratch("file");
         fs::write(&file, "").unwrap();
-        assert_eq!(prepare(&file), Err(OutputError::NotAFolder { path: file.clone() }));
+        assert_eq!(
+            prepare(&file),
+            Err(OutputError::NotAFolder { path: file.clone() })
+        );
         let below = prepare(&file.join("run")).unwrap_err();
-        assert!(matches!(below, OutputError::CannotCreateFolder { .. }), "{below}");
+        assert!(
+            matches!(below, OutputError::CannotCreateFolder { .. }),
+            "{below}"
+        );
         fs::remove_file(file).unwrap();
     }
 
     #[test]
     fn a_folder_that_takes_no_files_is_said_so() {
         // /proc refuses new files to everybody, including root.
-        assert!(matches!(prepare(Path::new("/proc")), Err(OutputError::NotWritable { .. })));
+        assert!(matches!(
+            prepare(Path::new("/proc")),
+            Err(OutputError::NotWritable { .. })
+        ));
     }
 }

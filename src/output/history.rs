@@ -22,7 +22,10 @@ impl History {
     pub fn create(path: impl AsRef<Path>) -> Result<Self, OutputError> {
         let path = path.as_ref();
         let file = File::create(path).map_err(|error| OutputError::write(path, error))?;
-        Ok(Self { path: path.into(), table: csv::Writer::from_writer(file) })
+        Ok(Self {
+            path: path.into(),
+            table: csv::Writer::from_writer(file),
+        })
     }
 
     /// Continues the table of an earlier run: keeps its rows up to and including `last_t_ms` (ms) and appends after.
@@ -36,28 +39,51 @@ impl History {
         // A time read back from text or a checkpoint may differ in the last digit: that is still the same step.
         let rounding = 1e-9 * last_t_ms.abs();
         let mut kept = Vec::new();
-        let mut old = csv::Reader::from_path(path).map_err(|error| OutputError::read(path, error))?;
+        let mut old =
+            csv::Reader::from_path(path).map_err(|error| OutputError::read(path, error))?;
         for row in old.deserialize::<StepRecord>() {
             match row {
                 Ok(row) if row.t_ms <= last_t_ms + rounding => kept.push(row),
                 Ok(_) => break,
-                Err(error) if kept.last().is_none_or(|row| row.t_ms < last_t_ms - rounding) => {
+                Err(error)
+                    if kept
+                        .last()
+                        .is_none_or(|row| row.t_ms < last_t_ms - rounding) =>
+                {
                     return Err(OutputError::read(path, error));
                 }
                 Err(_) => break,
             }
         }
-        if kept.last().is_none_or(|row| row.t_ms < last_t_ms - rounding) {
-            return Err(OutputError::read(path, format!("it has no row for t = {last_t_ms} ms, the time to go on from")));
+        if kept
+            .last()
+            .is_none_or(|row| row.t_ms < last_t_ms - rounding)
+        {
+            return Err(OutputError::read(
+                path,
+                format!("it has no row for t = {last_t_ms} ms, the time to go on from"),
+            ));
         }
         let mut table = csv::Writer::from_writer(Vec::new());
         for row in &kept {
-            table.serialize(row).map_err(|error| OutputError::write(path, error))?;
+            table
+                .serialize(row)
+                .map_err(|error| OutputError::write(path, error))?;
         }
-        let bytes = table.into_inner().map_err(|error| OutputError::write(path, error))?;
+        let bytes = table
+            .into_inner()
+            .map_err(|error| OutputError::write(path, error))?;
         super::atomic::write(path, &bytes)?;
-        let file = File::options().append(true).open(path).map_err(|error| OutputError::write(path, error))?;
-        Ok(Self { path: path.into(), table: csv::WriterBuilder::new().has_headers(false).from_writer(file) })
+        let file = File::options()
+            .append(true)
+            .open(path)
+            .map_err(|error| OutputError::write(path, error))?;
+        Ok(Self {
+            path: path.into(),
+            table: csv::WriterBuilder::new()
+                .has_headers(false)
+                .from_writer(file),
+        })
     }
 
     /// Adds one row and hands it to the operating system.
@@ -65,8 +91,12 @@ impl History {
     /// # Errors
     /// [`OutputError::Write`], for example when the disk is full.
     pub fn append(&mut self, record: &StepRecord) -> Result<(), OutputError> {
-        self.table.serialize(record).map_err(|error| OutputError::write(&self.path, error))?;
-        self.table.flush().map_err(|error| OutputError::write(&self.path, error))
+        self.table
+            .serialize(record)
+            .map_err(|error| OutputError::write(&self.path, error))?;
+        self.table
+            .flush()
+            .map_err(|error| OutputError::write(&self.path, error))
     }
 }
 
@@ -77,7 +107,10 @@ impl History {
 pub fn read(path: impl AsRef<Path>) -> Result<Vec<StepRecord>, OutputError> {
     let path = path.as_ref();
     let mut table = csv::Reader::from_path(path).map_err(|error| OutputError::read(path, error))?;
-    table.deserialize().map(|row| row.map_err(|error| OutputError::read(path, error))).collect()
+    table
+        .deserialize()
+        .map(|row| row.map_err(|error| OutputError::read(path, error)))
+        .collect()
 }
 
 #[cfg(test)]
@@ -87,7 +120,13 @@ mod tests {
     use super::*;
 
     fn record(t_ms: f64) -> StepRecord {
-        StepRecord { t_ms, force_N: 151.5 + t_ms, gap_A_mm: f64::NAN, newton_iterations: 4, ..StepRecord::default() }
+        StepRecord {
+            t_ms,
+            force_N: 151.5 + t_ms,
+            gap_A_mm: f64::NAN,
+            newton_iterations: 4,
+            ..StepRecord::default()
+        }
     }
 
     fn scratch(name: &str) -> PathBuf {
@@ -111,7 +150,10 @@ mod tests {
     #[test]
     fn the_columns_are_those_people_were_promised() {
         let path = scratch("columns");
-        History::create(&path).unwrap().append(&record(1.0)).unwrap();
+        History::create(&path)
+            .unwrap()
+            .append(&record(1.0))
+            .unwrap();
         let text = fs::read_to_string(&path).unwrap();
         assert_eq!(
             text.lines().next().unwrap(),

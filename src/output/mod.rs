@@ -11,18 +11,17 @@ mod atomic;
 pub mod error;
 pub mod fields;
 pub mod folder;
-#[allow(unsafe_code)]
 mod hdf_collective;
 pub mod history;
 pub mod monitor;
-//TMP pub mod plot;
-//TMP mod plot_frame;
-//TMP mod plot_shape;
+mod number;
+pub mod plot;
 pub mod record;
 pub mod summary;
 pub mod verdict;
 pub mod vtkhdf;
 mod vtkhdf_layout;
+mod vtkhdf_steps;
 
 pub use error::OutputError;
 pub use fields::{ContactFile, ContactSample, FieldSample, SheetFile, SheetPart, ToolsFile};

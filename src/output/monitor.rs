@@ -49,11 +49,18 @@ pub fn failed_banner(place: &str, reason: &str, facts: &[(&str, String)]) -> Str
 
 fn banner(frame: char, title: &str, facts: &[(&str, String)]) -> String {
     let rule = frame.to_string().repeat(WIDTH);
-    let names = facts.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
+    let names = facts
+        .iter()
+        .map(|(name, _)| name.chars().count())
+        .max()
+        .unwrap_or(0);
     let mut text = format!("{rule}\n{frame}  {title}\n");
     for (name, value) in facts {
         // The value keeps to its own column also where it takes several lines.
-        for (index, line) in wrap(value, WIDTH.saturating_sub(names + 6)).iter().enumerate() {
+        for (index, line) in wrap(value, WIDTH.saturating_sub(names + 6))
+            .iter()
+            .enumerate()
+        {
             let name = if index == 0 { name } else { "" };
             text.push_str(&format!("{frame}  {name:<names$}  {line}\n"));
         }
@@ -91,7 +98,10 @@ pub struct Monitor<W: Write> {
 impl<W: Write> Monitor<W> {
     /// A monitor of rank `rank` for a run that ends at `end_ms` (ms). `out` may be a `&mut dyn Write`.
     pub fn new(rank: i32, out: W, end_ms: f64) -> Self {
-        Self { out: (rank == 0).then_some(out), end_ms }
+        Self {
+            out: (rank == 0).then_some(out),
+            end_ms,
+        }
     }
 
     /// Shows [`header`].
@@ -134,8 +144,14 @@ mod tests {
     #[test]
     fn step_lines_stand_under_their_header() {
         let line = step_line(&record(), 900.0);
-        assert_eq!(header(), "   done       t ms  stroke mm    force N     dt ms  Newton  active   gap A mm");
-        assert_eq!(line, " 50.0 %    450.000    14.2500    168.123    2.5000       5      42    0.00125  2 refused");
+        assert_eq!(
+            header(),
+            "   done       t ms  stroke mm    force N     dt ms  Newton  active   gap A mm"
+        );
+        assert_eq!(
+            line,
+            " 50.0 %    450.000    14.2500    168.123    2.5000       5      42    0.00125  2 refused"
+        );
     }
 
     #[test]
@@ -155,8 +171,16 @@ mod tests {
         let reason = "Newton's iteration diverged 12 times in a row while the step shrank from 5 ms to 0.001 ms; \
                       the last attempt ended with a residual of 3.2e-4 mm.";
         let text = failed_banner("step 311, t = 612.3 ms, stroke 19.39 mm", reason, &[]);
-        assert!(text.contains("FAILED") && text.contains("where  step 311") && text.contains("why    Newton's"));
-        assert!(text.lines().all(|line| line.starts_with('#') && line.chars().count() <= WIDTH), "{text}");
+        assert!(
+            text.contains("FAILED")
+                && text.contains("where  step 311")
+                && text.contains("why    Newton's")
+        );
+        assert!(
+            text.lines()
+                .all(|line| line.starts_with('#') && line.chars().count() <= WIDTH),
+            "{text}"
+        );
         let good = finished_banner("4 of 4 hold", &[("steps", "191".into())]);
         assert!(good.contains("FINISHED: 4 of 4 hold") && !good.contains('#'));
     }

@@ -54,11 +54,23 @@ pub struct WorstValue {
 type Certificate = (&'static str, fn(&StepRecord) -> f64, fn(f64) -> f64);
 
 const CERTIFICATES: [Certificate; 5] = [
-    ("max_penetration_mm", |record| record.max_penetration_mm, |value| value),
-    ("min_contact_force_N", |record| record.min_contact_force_N, |value| -value),
+    (
+        "max_penetration_mm",
+        |record| record.max_penetration_mm,
+        |value| value,
+    ),
+    (
+        "min_contact_force_N",
+        |record| record.min_contact_force_N,
+        |value| -value,
+    ),
     ("energy_error", |record| record.energy_error, f64::abs),
     ("balance_error", |record| record.balance_error, f64::abs),
-    ("residual_norm_mm", |record| record.residual_norm_mm, f64::abs),
+    (
+        "residual_norm_mm",
+        |record| record.residual_norm_mm,
+        f64::abs,
+    ),
 ];
 
 /// Watches the certificates of every step and remembers where each was worst.
@@ -74,10 +86,21 @@ impl Certificates {
         self.steps += 1;
         for (worst, (certificate, value, badness)) in self.worst.iter_mut().zip(CERTIFICATES) {
             let value = value(record);
-            // `!(a <= b)` also lets a NaN replace a number, and nothing replace a NaN.
-            let replaces = worst.is_none_or(|old| !old.value.is_nan() && !(badness(value) <= badness(old.value)));
+            let how_bad = |value: f64| {
+                if value.is_nan() {
+                    f64::INFINITY
+                } else {
+                    badness(value)
+                }
+            };
+            let replaces = worst.is_none_or(|old| how_bad(value) > how_bad(old.value));
             if replaces {
-                *worst = Some(WorstValue { certificate, value, step: self.steps, t_ms: record.t_ms });
+                *worst = Some(WorstValue {
+                    certificate,
+                    value,
+                    step: self.steps,
+                    t_ms: record.t_ms,
+                });
             }
         }
     }
@@ -145,7 +168,8 @@ impl Summary {
     /// [`OutputError::Write`]; it cannot happen with the types above, but nothing here relies on that.
     pub fn json(&self) -> Result<String, OutputError> {
         let text = serde_json::to_string_pretty(self);
-        text.map(|text| text + "\n").map_err(|error| OutputError::write(Path::new("summary.json"), error))
+        text.map(|text| text + "\n")
+            .map_err(|error| OutputError::write(Path::new("summary.json"), error))
     }
 
     /// Writes the summary: the file is there in full or not at all.
@@ -163,18 +187,39 @@ mod tests {
     use crate::output::{Tolerance, VerdictRow};
 
     fn record(t_ms: f64) -> StepRecord {
-        StepRecord { t_ms, ..StepRecord::default() }
+        StepRecord {
+            t_ms,
+            ..StepRecord::default()
+        }
     }
 
     #[test]
     fn the_worst_values_know_their_step() {
         let mut certificates = Certificates::default();
-        certificates.observe(&StepRecord { max_penetration_mm: 1e-9, min_contact_force_N: 0.5, ..record(1.0) });
-        certificates.observe(&StepRecord { energy_error: -2e-3, min_contact_force_N: -0.1, ..record(2.0) });
-        certificates.observe(&StepRecord { energy_error: 1e-3, balance_error: f64::NAN, ..record(3.0) });
+        certificates.observe(&StepRecord {
+            max_penetration_mm: 1e-9,
+            min_contact_force_N: 0.5,
+            ..record(1.0)
+        });
+        certificates.observe(&StepRecord {
+            energy_error: -2e-3,
+            min_contact_force_N: -0.1,
+            ..record(2.0)
+        });
+        certificates.observe(&StepRecord {
+            energy_error: 1e-3,
+            balance_error: f64::NAN,
+            ..record(3.0)
+        });
         certificates.observe(&record(4.0));
         let worst = certificates.worst();
-        let at = |name: &str| worst.iter().find(|w| w.certificate == name).map(|w| (w.value, w.step)).unwrap();
+        let at = |name: &str| {
+            worst
+                .iter()
+                .find(|w| w.certificate == name)
+                .map(|w| (w.value, w.step))
+                .unwrap()
+        };
         assert_eq!(at("max_penetration_mm"), (1e-9, 1));
         assert_eq!(at("min_contact_force_N"), (-0.1, 2));
         assert_eq!(at("energy_error"), (-2e-3, 2));
@@ -183,12 +228,28 @@ mod tests {
 
     #[test]
     fn the_json_has_what_it_promises() {
-        let row = VerdictRow::new("force at d = 20", 180.6, 181.0, Tolerance::Relative(0.02), "N", "code_aster");
+        let row = VerdictRow::new(
+            "force at d = 20",
+            180.6,
+            181.0,
+            Tolerance::Relative(0.02),
+            "N",
+            "code_aster",
+        );
         let summary = Summary {
             status: Status::NotConverged,
             reason: Some("step 12 at t = 40 ms".into()),
-            last: Some(StepRecord { gap_A_mm: f64::NAN, force_N: 151.5, ..record(40.0) }),
-            counts: Counts { steps: 11, refused_solves: 6, newton_iterations: 80, linear_solves: 86 },
+            last: Some(StepRecord {
+                gap_A_mm: f64::NAN,
+                force_N: 151.5,
+                ..record(40.0)
+            }),
+            counts: Counts {
+                steps: 11,
+                refused_solves: 6,
+                newton_iterations: 80,
+                linear_solves: 86,
+            },
             tolerances: BTreeMap::from([("residual_mm".into(), 1e-8)]),
             worst: Vec::new(),
             verdicts: VerdictTable { rows: vec![row] },
@@ -200,7 +261,10 @@ mod tests {
                 build: BTreeMap::new(),
                 options: BTreeMap::from([("friction".into(), "0.1342".into())]),
             },
-            timing: Timing { cpu_s: 12.5, wall_s: 6.5 },
+            timing: Timing {
+                cpu_s: 12.5,
+                wall_s: 6.5,
+            },
         };
         let value: serde_json::Value = serde_json::from_str(&summary.json().unwrap()).unwrap();
         assert_eq!(value["status"], "not converged");

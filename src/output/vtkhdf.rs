@@ -15,7 +15,8 @@ use hdf5::{Attribute, Dataset, File};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{AsRaw, Communicator};
 
-use super::vtkhdf_layout::{Layout, StepTable, extend, write_values};
+use super::vtkhdf_layout::{Layout, extend, write_values};
+use super::vtkhdf_steps::StepTable;
 use super::{OutputError, agreement::agree};
 
 /// VTK's numbers for the cell types used here.
@@ -50,11 +51,20 @@ impl Part {
     }
 
     fn check(&self) -> Result<(), String> {
-        if self.offsets.first() != Some(&0) || self.offsets.last() != Some(&(self.connectivity.len() as i64)) {
+        if self.offsets.first() != Some(&0)
+            || self.offsets.last() != Some(&(self.connectivity.len() as i64))
+        {
             return Err("the cell offsets do not span the connectivity".into());
         }
-        match self.connectivity.iter().find(|&&node| node < 0 || node as usize >= self.points.len()) {
-            Some(node) => Err(format!("a cell names point {node} of {}", self.points.len())),
+        match self
+            .connectivity
+            .iter()
+            .find(|&&node| node < 0 || node as usize >= self.points.len())
+        {
+            Some(node) => Err(format!(
+                "a cell names point {node} of {}",
+                self.points.len()
+            )),
             None => Ok(()),
         }
     }
@@ -98,7 +108,12 @@ impl Values<'_> {
             Self::I32(values) => (Kind::I32, values.len()),
         };
         if kind != spec.kind || length != rows * spec.components {
-            let ArraySpec { name, components, kind: expected, .. } = spec;
+            let ArraySpec {
+                name,
+                components,
+                kind: expected,
+                ..
+            } = spec;
             return Err(format!(
                 "array {name} got {length} values of kind {kind:?}, expected {rows} x {components} of kind {expected:?}"
             ));
@@ -137,17 +152,34 @@ impl TimeSeries {
         cell_arrays: &[(ArraySpec, Values)],
     ) -> Result<Self, OutputError> {
         let path = path.as_ref();
-        let checked = cell_arrays.iter().try_for_each(|(spec, values)| values.check(spec, part.cells()));
-        agree(comm, part.check().and(checked).map_err(|reason| OutputError::mismatch(path, reason)))?;
+        let checked = cell_arrays
+            .iter()
+            .try_for_each(|(spec, values)| values.check(spec, part.cells()));
+        agree(
+            comm,
+            part.check()
+                .and(checked)
+                .map_err(|reason| OutputError::mismatch(path, reason)),
+        )?;
         let comm = comm.duplicate();
-        let opened = File::with_options().with_fapl(|access| access.mpio(comm.as_raw(), None)).create(path);
-        let file = agree(&comm, opened.map_err(|error| OutputError::hdf5(path, "creating it", error)))?;
+        let opened = File::with_options()
+            .with_fapl(|access| access.mpio(comm.as_raw(), None))
+            .create(path);
+        let file = agree(
+            &comm,
+            opened.map_err(|error| OutputError::hdf5(path, "creating it", error)),
+        )?;
         let layout = Layout::new(&comm, part);
         let failed = |error| OutputError::hdf5(path, "writing the mesh", error);
-        let made = layout.define(&file, point_arrays, cell_arrays).map_err(|error| failed(error.to_string()));
+        let made = layout
+            .define(&file, point_arrays, cell_arrays)
+            .map_err(|error| failed(error.to_string()));
         let (point_datasets, table, count) = agree(&comm, made)?;
         let written = layout.write_mesh(&file, part, cell_arrays).map_err(failed);
-        agree(&comm, written.and(file.flush().map_err(|error| failed(error.to_string()))))?;
+        agree(
+            &comm,
+            written.and(file.flush().map_err(|error| failed(error.to_string()))),
+        )?;
         Ok(Self {
             path: path.into(),
             steps: 0,
@@ -175,13 +207,29 @@ impl TimeSeries {
     /// [`OutputError::Mismatch`] if the values do not fit, [`OutputError::Hdf5`] if they cannot be written.
     pub fn append(&mut self, t_ms: f64, values: &[Values]) -> Result<(), OutputError> {
         let fits = if values.len() == self.point_specs.len() {
-            values.iter().zip(&self.point_specs).try_for_each(|(values, spec)| values.check(spec, self.local_points))
+            values
+                .iter()
+                .zip(&self.point_specs)
+                .try_for_each(|(values, spec)| values.check(spec, self.local_points))
         } else {
-            Err(format!("{} arrays given, {} expected", values.len(), self.point_specs.len()))
+            Err(format!(
+                "{} arrays given, {} expected",
+                values.len(),
+                self.point_specs.len()
+            ))
         };
-        agree(&self.comm, fits.map_err(|reason| OutputError::mismatch(&self.path, reason)))?;
+        agree(
+            &self.comm,
+            fits.map_err(|reason| OutputError::mismatch(&self.path, reason)),
+        )?;
         let written = self.append_everywhere(t_ms, values);
-        let failed = |reason| OutputError::hdf5(&self.path, format!("writing the step at t = {t_ms} ms"), reason);
+        let failed = |reason| {
+            OutputError::hdf5(
+                &self.path,
+                format!("writing the step at t = {t_ms} ms"),
+                reason,
+            )
+        };
         agree(&self.comm, written.map_err(failed))?;
         self.steps += 1;
         Ok(())
@@ -201,9 +249,16 @@ impl TimeSeries {
             keep(extend(dataset, first_row + self.total_points));
             keep(write_values(dataset, first_row + self.first_point, values));
         }
-        keep(self.table.append(self.steps, t_ms, first_row as i64, self.comm.rank() == 0));
+        keep(
+            self.table
+                .append(self.steps, t_ms, first_row as i64, self.comm.rank() == 0),
+        );
         keep(self.file.flush().map_err(|error| error.to_string()));
-        keep(self.count.write_scalar(&(self.steps as i64 + 1)).map_err(|error| error.to_string()));
+        keep(
+            self.count
+                .write_scalar(&(self.steps as i64 + 1))
+                .map_err(|error| error.to_string()),
+        );
         keep(self.file.flush().map_err(|error| error.to_string()));
         first_failure
     }

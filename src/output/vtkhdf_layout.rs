@@ -8,9 +8,7 @@ use mpi::traits::{Communicator, CommunicatorCollectives};
 
 use super::hdf_collective::write_rows;
 use super::vtkhdf::{ArraySpec, Kind, Part, Values};
-
-/// Steps per chunk of the step table: small enough to waste nothing, large enough for a whole run in a few chunks.
-const STEPS_PER_CHUNK: usize = 512;
+use super::vtkhdf_steps::StepTable;
 
 /// What a new file gives the series: the point arrays, the step table and the counter of steps.
 pub(super) type Growing = (Vec<Dataset>, StepTable, Attribute);
@@ -31,10 +29,19 @@ impl Layout {
     /// Collective.
     pub(super) fn new(comm: &SimpleCommunicator, part: &Part) -> Self {
         let (rank, ranks) = (comm.rank() as usize, comm.size() as usize);
-        let mine = [part.points.len() as u64, part.cells() as u64, part.connectivity.len() as u64];
+        let mine = [
+            part.points.len() as u64,
+            part.cells() as u64,
+            part.connectivity.len() as u64,
+        ];
         let mut all = vec![0_u64; 3 * ranks];
         comm.all_gather_into(&mine[..], &mut all[..]);
-        let sum = |of: usize, upto: usize| all.chunks(3).take(upto).map(|counts| counts[of]).sum::<u64>() as usize;
+        let sum = |of: usize, upto: usize| {
+            all.chunks(3)
+                .take(upto)
+                .map(|counts| counts[of])
+                .sum::<u64>() as usize
+        };
         Self {
             rank,
             ranks,
@@ -55,16 +62,30 @@ impl Layout {
         cell_arrays: &[(ArraySpec, Values)],
     ) -> hdf5::Result<Growing> {
         let root = file.create_group("VTKHDF")?;
-        let kind = FixedAscii::<16>::from_ascii(b"UnstructuredGrid").map_err(|error| error.to_string())?;
-        root.new_attr::<FixedAscii<16>>().create("Type")?.write_scalar(&kind)?;
-        root.new_attr::<i64>().shape(2).create("Version")?.write_raw(&[2_i64, 0])?;
+        let kind =
+            FixedAscii::<16>::from_ascii(b"UnstructuredGrid").map_err(|error| error.to_string())?;
+        root.new_attr::<FixedAscii<16>>()
+            .create("Type")?
+            .write_scalar(&kind)?;
+        root.new_attr::<i64>()
+            .shape(2)
+            .create("Version")?
+            .write_raw(&[2_i64, 0])?;
         for name in ["NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"] {
             root.new_dataset::<i64>().shape(self.ranks).create(name)?;
         }
-        root.new_dataset::<f64>().shape((self.total_points, 3)).create("Points")?;
-        root.new_dataset::<i64>().shape(self.total_connectivity).create("Connectivity")?;
-        root.new_dataset::<i64>().shape(self.total_cells + self.ranks).create("Offsets")?;
-        root.new_dataset::<u8>().shape(self.total_cells).create("Types")?;
+        root.new_dataset::<f64>()
+            .shape((self.total_points, 3))
+            .create("Points")?;
+        root.new_dataset::<i64>()
+            .shape(self.total_connectivity)
+            .create("Connectivity")?;
+        root.new_dataset::<i64>()
+            .shape(self.total_cells + self.ranks)
+            .create("Offsets")?;
+        root.new_dataset::<u8>()
+            .shape(self.total_cells)
+            .create("Types")?;
         let cell_data = root.create_group("CellData")?;
         for (spec, _) in cell_arrays {
             let dataset = match spec.kind {
@@ -97,17 +118,36 @@ impl Layout {
         part: &Part,
         cell_arrays: &[(ArraySpec, Values)],
     ) -> Result<(), String> {
-        let open = |name: &str| file.dataset(&format!("VTKHDF/{name}")).map_err(|error| error.to_string());
+        let open = |name: &str| {
+            file.dataset(&format!("VTKHDF/{name}"))
+                .map_err(|error| error.to_string())
+        };
         let points: Vec<f64> = part.points.iter().flatten().copied().collect();
         let types = vec![part.cell_type as u8; part.cells()];
         let mut results = vec![
-            write_rows(&open("NumberOfPoints")?, self.rank, &[part.points.len() as i64]),
+            write_rows(
+                &open("NumberOfPoints")?,
+                self.rank,
+                &[part.points.len() as i64],
+            ),
             write_rows(&open("NumberOfCells")?, self.rank, &[part.cells() as i64]),
-            write_rows(&open("NumberOfConnectivityIds")?, self.rank, &[part.connectivity.len() as i64]),
+            write_rows(
+                &open("NumberOfConnectivityIds")?,
+                self.rank,
+                &[part.connectivity.len() as i64],
+            ),
             write_rows(&open("Points")?, self.first_point, &points),
-            write_rows(&open("Connectivity")?, self.first_connectivity, &part.connectivity),
+            write_rows(
+                &open("Connectivity")?,
+                self.first_connectivity,
+                &part.connectivity,
+            ),
             // Each part has one offset more than cells.
-            write_rows(&open("Offsets")?, self.first_cell + self.rank, &part.offsets),
+            write_rows(
+                &open("Offsets")?,
+                self.first_cell + self.rank,
+                &part.offsets,
+            ),
             write_rows(&open("Types")?, self.first_cell, &types),
         ];
         for (spec, values) in cell_arrays {
@@ -116,62 +156,6 @@ impl Layout {
         }
         results.into_iter().collect()
     }
-}
-
-/// `Steps`: for each step its time and where its data start. The mesh starts at 0 for every step.
-pub(super) struct StepTable {
-    times: Dataset,
-    zeros: Vec<Dataset>,
-    parts: Dataset,
-    point_offsets: Vec<Dataset>,
-    ranks: usize,
-}
-
-impl StepTable {
-    fn define(
-        root: &Group,
-        point_arrays: &[ArraySpec],
-        cell_arrays: &[&str],
-        ranks: usize,
-    ) -> hdf5::Result<(Self, Attribute)> {
-        let steps = root.create_group("Steps")?;
-        let count = steps.new_attr::<i64>().create("NSteps")?;
-        count.write_scalar(&0_i64)?;
-        let times = extendable::<f64>(&steps, "Values", 1, STEPS_PER_CHUNK)?;
-        let parts = extendable::<i64>(&steps, "NumberOfParts", 1, STEPS_PER_CHUNK)?;
-        let mut zeros = Vec::new();
-        for name in ["PartOffsets", "PointOffsets"] {
-            zeros.push(extendable::<i64>(&steps, name, 1, STEPS_PER_CHUNK)?);
-        }
-        for name in ["CellOffsets", "ConnectivityIdOffsets"] {
-            let builder = steps.new_dataset::<i64>().chunk((STEPS_PER_CHUNK, 1));
-            zeros.push(builder.fill_time(FillTime::Never).shape((0.., 1)).create(name)?);
-        }
-        let cell_offsets = steps.create_group("CellDataOffsets")?;
-        for name in cell_arrays {
-            zeros.push(extendable::<i64>(&cell_offsets, name, 1, STEPS_PER_CHUNK)?);
-        }
-        let offsets = steps.create_group("PointDataOffsets")?;
-        let point_offsets = point_arrays.iter().map(|spec| extendable::<i64>(&offsets, spec.name, 1, STEPS_PER_CHUNK));
-        let point_offsets = point_offsets.collect::<hdf5::Result<_>>()?;
-        Ok((Self { times, zeros, parts, point_offsets, ranks }, count))
-    }
-
-    /// Adds the row of step number `step` (counted from 0) whose point data start at row `first_row`. Collective;
-    /// rank 0 writes. Every rank makes all calls, the first failure is returned.
-    pub(super) fn append(&self, step: usize, t_ms: f64, first_row: i64, writes: bool) -> Result<(), String> {
-        let mut results = vec![append_one(&self.times, step, t_ms, writes)];
-        results.push(append_one(&self.parts, step, self.ranks as i64, writes));
-        results.extend(self.zeros.iter().map(|dataset| append_one(dataset, step, 0_i64, writes)));
-        results.extend(self.point_offsets.iter().map(|dataset| append_one(dataset, step, first_row, writes)));
-        results.into_iter().collect()
-    }
-}
-
-fn append_one<T: H5Type>(dataset: &Dataset, step: usize, value: T, writes: bool) -> Result<(), String> {
-    let extended = extend(dataset, step + 1);
-    let written = write_rows(dataset, step, if writes { std::slice::from_ref(&value) } else { &[] });
-    extended.and(written)
 }
 
 /// Sets the number of rows. Collective.
@@ -184,7 +168,11 @@ pub(super) fn extend(dataset: &Dataset, rows: usize) -> Result<(), String> {
 }
 
 /// Writes this rank's values from row `first_row` on. Collective.
-pub(super) fn write_values(dataset: &Dataset, first_row: usize, values: &Values) -> Result<(), String> {
+pub(super) fn write_values(
+    dataset: &Dataset,
+    first_row: usize,
+    values: &Values,
+) -> Result<(), String> {
     match values {
         Values::F64(values) => write_rows(dataset, first_row, values),
         Values::I32(values) => write_rows(dataset, first_row, values),
@@ -192,13 +180,26 @@ pub(super) fn write_values(dataset: &Dataset, first_row: usize, values: &Values)
 }
 
 /// A dataset without rows that can grow, in chunks of `rows`.
-fn extendable<T: H5Type>(group: &Group, name: &str, components: usize, rows: usize) -> hdf5::Result<Dataset> {
+pub(super) fn extendable<T: H5Type>(
+    group: &Group,
+    name: &str,
+    components: usize,
+    rows: usize,
+) -> hdf5::Result<Dataset> {
     let builder = group.new_dataset::<T>();
     // Every value is written right after the rows exist: filling them first would double the traffic.
     if components == 1 {
-        builder.chunk(rows).fill_time(FillTime::Never).shape(0..).create(name)
+        builder
+            .chunk(rows)
+            .fill_time(FillTime::Never)
+            .shape(0..)
+            .create(name)
     } else {
-        builder.chunk((rows, components)).fill_time(FillTime::Never).shape((0.., components)).create(name)
+        builder
+            .chunk((rows, components))
+            .fill_time(FillTime::Never)
+            .shape((0.., components))
+            .create(name)
     }
 }
 
@@ -206,11 +207,18 @@ fn fixed<T: H5Type>(group: &Group, spec: &ArraySpec, rows: usize) -> hdf5::Resul
     if spec.components == 1 {
         group.new_dataset::<T>().shape(rows).create(spec.name)
     } else {
-        group.new_dataset::<T>().shape((rows, spec.components)).create(spec.name)
+        group
+            .new_dataset::<T>()
+            .shape((rows, spec.components))
+            .create(spec.name)
     }
 }
 
 fn write_unit(dataset: &Dataset, spec: &ArraySpec) -> hdf5::Result<()> {
-    let unit = FixedAscii::<16>::from_ascii(spec.unit.as_bytes()).map_err(|error| error.to_string())?;
-    dataset.new_attr::<FixedAscii<16>>().create("unit")?.write_scalar(&unit)
+    let unit =
+        FixedAscii::<16>::from_ascii(spec.unit.as_bytes()).map_err(|error| error.to_string())?;
+    dataset
+        .new_attr::<FixedAscii<16>>()
+        .create("unit")?
+        .write_scalar(&unit)
 }

@@ -1,0 +1,47 @@
+//! Figures as SVG files: force against stroke, and the deformed sheet between its tools.
+//!
+//! In: step records; deformed elements and tool outlines. Out: one SVG file each, there in full or not at all.
+//! Never: a window on the screen, or a value that is not in the input.
+
+mod canvas;
+mod color;
+mod elements;
+mod force;
+mod geometry;
+mod shape;
+
+use std::path::Path;
+
+pub use elements::{DeformedElement, gather_elements};
+pub use force::force_svg;
+pub use shape::{Shape, View, shape_svg};
+
+use super::{OutputError, StepRecord, atomic};
+
+/// Draws [`force_svg`] into a file.
+///
+/// # Errors
+/// [`OutputError::Figure`] if it cannot be drawn, [`OutputError::Write`] if it cannot be written.
+pub fn force(
+    path: impl AsRef<Path>,
+    title: &str,
+    records: &[StepRecord],
+) -> Result<(), OutputError> {
+    store(path.as_ref(), force_svg(title, records))
+}
+
+/// Draws [`shape_svg`] into a file.
+///
+/// # Errors
+/// [`OutputError::Figure`] if it cannot be drawn, [`OutputError::Write`] if it cannot be written.
+pub fn shape(path: impl AsRef<Path>, shape: &Shape) -> Result<(), OutputError> {
+    store(path.as_ref(), shape_svg(shape))
+}
+
+fn store(path: &Path, svg: Result<String, String>) -> Result<(), OutputError> {
+    let svg = svg.map_err(|reason| OutputError::Figure {
+        path: path.into(),
+        reason,
+    })?;
+    atomic::write(path, svg.as_bytes())
+}

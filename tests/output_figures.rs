@@ -1,0 +1,187 @@
+//! The figures can be drawn from plausible data, contain what they should, and stay for a look in the folder `tmp` of
+//! cargo's target folder.
+
+use std::f64::consts::FRAC_PI_2;
+use std::path::{Path, PathBuf};
+
+use ssnp155::output::plot::{self, DeformedElement, Shape, View};
+use ssnp155::output::{FieldSample, SheetPart, StepRecord};
+
+fn file(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("figures");
+    std::fs::create_dir_all(&folder).unwrap();
+    folder.join(name)
+}
+
+fn arc(center: [f64; 2], radius: f64, from: f64, to: f64) -> impl Iterator<Item = [f64; 2]> {
+    (0..=40).map(move |i| {
+        let angle = from + (to - from) * f64::from(i) / 40.0;
+        [
+            center[0] + radius * angle.cos(),
+            center[1] + radius * angle.sin(),
+        ]
+    })
+}
+
+fn die() -> Vec<[f64; 2]> {
+    let cavity = arc([0.0, -4.0], 25.0, -FRAC_PI_2, 0.0);
+    let shoulder = arc([29.0, -4.0], 4.0, 2.0 * FRAC_PI_2, FRAC_PI_2);
+    cavity.chain(shoulder).chain([[70.0, 0.0]]).collect()
+}
+
+fn punch() -> Vec<[f64; 2]> {
+    arc([0.0, 24.5], 23.5, -FRAC_PI_2, 0.0)
+        .chain([[23.5, 40.0]])
+        .collect()
+}
+
+/// A sheet of `columns` x `rows` elements bent to an arc of radius 24.2 mm and `angle`, then straight.
+fn bent_sheet(columns: usize, rows: usize, angle: f64, stroke: f64) -> Vec<DeformedElement> {
+    let mut part = SheetPart::default();
+    let mut samples = Vec::new();
+    let radius = 24.2;
+    for (column, row) in (0..columns).flat_map(|c| (0..rows).map(move |r| (c, r))) {
+        let at = |i: f64, j: f64| {
+            [
+                60.0 * (column as f64 + i) / columns as f64,
+                (row as f64 + j) / rows as f64,
+            ]
+        };
+        let corners = [at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)];
+        let sides = [at(0.5, 0.0), at(1.0, 0.5), at(0.5, 1.0), at(0.0, 0.5)];
+        let base = part.coordinates.len();
+        part.quads.push(std::array::from_fn(|node| base + node));
+        for [x, y] in corners.into_iter().chain(sides) {
+            let turn = if angle > 0.0 {
+                (x / radius).min(angle)
+            } else {
+                0.0
+            };
+            let straight = if angle > 0.0 {
+                (x - radius * angle).max(0.0)
+            } else {
+                x
+            };
+            let offset = y - 0.5;
+            let bent = [
+                radius * turn.sin() + straight * turn.cos() - offset * turn.sin(),
+                0.5 - stroke
+                    + radius * (1.0 - turn.cos())
+                    + straight * turn.sin()
+                    + offset * turn.cos(),
+            ];
+            let fade = 1.0 / (1.0 + ((x - radius * angle) / 1.5).exp());
+            let strain = (offset.abs() / radius - 0.0028).max(0.0)
+                * fade
+                * if angle > 0.0 { 1.0 } else { 0.0 };
+            part.coordinates.push([x, y]);
+            samples.push(FieldSample {
+                displacement: [bent[0] - x, bent[1] - y],
+                equivalent_plastic_strain: strain,
+                ..FieldSample::default()
+            });
+        }
+    }
+    DeformedElement::of(&part, &samples)
+}
+
+fn draw(name: &str, elements: &[DeformedElement], stroke_mm: f64, view: View) -> String {
+    let (die, punch) = (die(), punch());
+    let title = format!("Deformed sheet at a stroke of {stroke_mm} mm");
+    let shape = Shape {
+        title: &title,
+        elements,
+        die: &die,
+        punch: &punch,
+        stroke_mm,
+        plastic_strain_max: None,
+        view,
+    };
+    plot::shape(file(name), &shape).unwrap();
+    std::fs::read_to_string(file(name)).unwrap()
+}
+
+#[test]
+fn the_force_figure_shows_loading_unloading_and_the_reference() {
+    let force =
+        |d: f64| 60.0 * (d * 0.8_f64).min(2.2) + 2.2 * d + 60.0 * (d - 26.0).max(0.0).powi(2) / 4.0;
+    let mut records = Vec::new();
+    for i in 0..=190 {
+        let stroke_mm = 0.15 * f64::from(i);
+        records.push(StepRecord {
+            stroke_mm,
+            force_N: force(stroke_mm),
+            ..Default::default()
+        });
+    }
+    for i in 1..=20 {
+        let stroke_mm = 28.5 - 2.85 * f64::from(i) / 20.0;
+        let left = (1.0 - f64::from(i) / 8.0).max(0.0);
+        records.push(StepRecord {
+            stroke_mm,
+            force_N: force(28.5) * left * left,
+            ..Default::default()
+        });
+    }
+    plot::force(
+        file("force.svg"),
+        "Punch force, 170 x 5 elements, without friction",
+        &records,
+    )
+    .unwrap();
+    let svg = std::fs::read_to_string(file("force.svg")).unwrap();
+    for text in [
+        "ssnp155, loading",
+        "ssnp155, unloading",
+        "code_aster 15.2",
+        "punch stroke in mm",
+    ] {
+        assert!(svg.contains(text), "{text}");
+    }
+}
+
+#[test]
+fn the_shape_figure_shows_the_sheet_at_several_instants() {
+    let full = bent_sheet(170, 5, 79.8_f64.to_radians(), 28.5);
+    let svg = draw("shape-loaded.svg", &full, 28.5, View::Whole);
+    // At least both halves of every element, two tools and the stripes of the colour bar; then the close-up.
+    assert!(svg.matches("<polygon").count() > 2 * 850 + 2 + 128);
+    draw(
+        "shape-half.svg",
+        &bent_sheet(170, 5, 0.7, 14.25),
+        14.25,
+        View::Whole,
+    );
+    draw(
+        "shape-start.svg",
+        &bent_sheet(170, 5, 0.0, 0.0),
+        0.0,
+        View::Whole,
+    );
+    draw(
+        "shape-window.svg",
+        &full,
+        28.5,
+        View::Window([20.0, 28.0, -12.0, -5.0]),
+    );
+}
+
+#[test]
+fn a_shape_without_elements_is_an_error_with_the_path() {
+    let shape = Shape {
+        title: "",
+        elements: &[],
+        die: &[],
+        punch: &[],
+        stroke_mm: 0.0,
+        plastic_strain_max: None,
+        view: View::Whole,
+    };
+    let error = plot::shape(file("never.svg"), &shape)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("never.svg") && error.contains("no elements"),
+        "{error}"
+    );
+}
