@@ -1,1 +1,81 @@
-fn main() {}
+//! The program: opens MPI and PETSc, reads the case, runs it, and ends with a code that tells how.
+
+use std::fmt::Display;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+
+use mpi::collective::SystemOperation;
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::{Communicator, CommunicatorCollectives};
+use petsc::{Session, options};
+use ssnp155::case::{Case, OptionSource, check_arguments, check_ranks, help_text};
+use ssnp155::run::{conclude, simulate};
+
+/// Exit code of a run that did not finish, or whose verdicts do not hold.
+const NOT_HELD: u8 = 1;
+/// Exit code of a run that could not be made.
+const REFUSED: u8 = 2;
+
+fn main() -> ExitCode {
+    let Some((universe, _)) = mpi::initialize_with_threading(mpi::Threading::Funneled) else {
+        eprintln!("ssnp155: MPI cannot be started");
+        return ExitCode::from(REFUSED);
+    };
+    let world = universe.world();
+    let args: Vec<String> = std::env::args().collect();
+    // A panic on one rank would leave the others waiting for ever, so it ends them all.
+    match catch_unwind(AssertUnwindSafe(|| program(&world, &args))) {
+        Ok(Ok(true)) => ExitCode::SUCCESS,
+        Ok(Ok(false)) => ExitCode::from(NOT_HELD),
+        Ok(Err(Refused)) => ExitCode::from(REFUSED),
+        Err(_) => world.abort(i32::from(REFUSED)),
+    }
+}
+
+/// There was no run; the reason has been told.
+struct Refused;
+
+/// Whether the run finished and everything it is judged by holds. Collective.
+fn program(world: &SimpleCommunicator, args: &[String]) -> Result<bool, Refused> {
+    agree(world, check_arguments(&args[1..]))?;
+    let session = agree(world, Session::with_help(args, &help_text()))?;
+    let case = agree(world, Case::read(&PetscOptions))?;
+    agree(world, check_ranks(world.size().unsigned_abs() as usize, &case))?;
+    let outcome = agree(world, simulate(&case, world))?;
+    match outcome {
+        Some(outcome) => agree(world, conclude(&case, outcome, &session, world)),
+        // Help was asked for, and given.
+        None => Ok(true),
+    }
+}
+
+/// The value if every rank has one; otherwise the lowest rank that failed says why. Collective.
+fn agree<T, E: Display>(
+    world: &SimpleCommunicator,
+    mine: Result<T, E>,
+) -> Result<T, Refused> {
+    let vote = if mine.is_err() { world.rank() } else { i32::MAX };
+    let mut lowest = i32::MAX;
+    world.all_reduce_into(&vote, &mut lowest, SystemOperation::min());
+    match mine {
+        Ok(value) if lowest == i32::MAX => Ok(value),
+        Err(error) if lowest == world.rank() => {
+            eprintln!("ssnp155: {error}");
+            Err(Refused)
+        }
+        _ => Err(Refused),
+    }
+}
+
+/// PETSc's option database as the source of ours.
+struct PetscOptions;
+
+impl OptionSource for PetscOptions {
+    fn get(&self, name: &str) -> Option<String> {
+        // PETSc stores an option without a value, and one with an empty value, alike.
+        match options::get(name) {
+            Ok(Some(value)) => Some(value),
+            _ => options::has(name).ok().filter(|&given| given).map(|_| String::new()),
+        }
+    }
+}

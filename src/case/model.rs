@@ -146,6 +146,8 @@ pub struct Discretisation {
     pub contact_points_per_edge: usize,
     /// Gap the tools' surface gives per contact pressure, mm/MPa.
     pub contact_compliance: f64,
+    /// Penetration the certificate of a step allows, mm.
+    pub penetration_limit: f64,
 }
 
 impl Discretisation {
@@ -213,6 +215,7 @@ impl Case {
                 quadrature: table::QUADRATURE.read(options)?,
                 contact_points_per_edge: table::CONTACT_POINTS_PER_EDGE.read(options)?,
                 contact_compliance: table::CONTACT_COMPLIANCE.read(options)?,
+                penetration_limit: table::PENETRATION_LIMIT.read(options)?,
             },
             stepping: Stepping {
                 dt_initial: table::DT_INITIAL.read(options)?,

@@ -127,6 +127,12 @@ option_table! {
         meaning: "How far the tools' surface gives way per contact pressure; 5e-5 is a stiffness of 2e4 MPa/mm.",
         value: |case| case.discretisation.contact_compliance,
     }
+    PENETRATION_LIMIT: Real {
+        name: "penetration_limit", unit: "mm", default: "5e-3", group: Group::Discretisation,
+        kind: Real::positive(1e5),
+        meaning: "Deepest penetration, at the contact points and between them, with which a run still counts as good.",
+        value: |case| case.discretisation.penetration_limit,
+    }
     DT_INITIAL: Real {
         name: "dt_initial", unit: "ms", default: "1", group: Group::Stepping, kind: Real::positive(1e9),
         meaning: "First time step.",

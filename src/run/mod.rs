@@ -1,5 +1,145 @@
-//! In: a case and an open PETSc session. Out: one simulation, driven step by step.
-//! Never: mechanics, drawing, or writing files itself.
+//! In: a case and an open PETSc session. Out: one simulation, driven step by step to its end or to
+//! the step that cannot be solved, and how it ended.
+//! Never: mechanics, or how a file is written.
 
+mod conclusion;
+mod defaults;
+mod ledger;
 mod newton;
+mod recorder;
+mod refusal;
+mod simulation;
 mod step_size;
+
+use std::rc::Rc;
+use std::time::Instant;
+
+use mpi::collective::SystemOperation;
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::{Communicator, CommunicatorCollectives};
+use petsc::CallbackError;
+
+pub use conclusion::conclude;
+pub use ledger::{Ledger, StepEffort};
+pub use newton::Damping;
+pub use recorder::Recorder;
+pub use refusal::Refusal;
+pub use simulation::Counts;
+pub use step_size::StepControl;
+
+use crate::case::{self, Case, CaseError, reference_values};
+use crate::output::OutputError;
+use crate::system::{Problem, System, SystemError};
+use simulation::Simulation;
+
+/// A run that could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The case or a file it needs.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// Partition or evaluation.
+    #[error(transparent)]
+    System(#[from] SystemError),
+    /// Files.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// PETSc.
+    #[error(transparent)]
+    Petsc(#[from] petsc::Error),
+    /// A hook of the time stepper.
+    #[error(transparent)]
+    Hook(#[from] CallbackError),
+}
+
+/// How a run ended.
+pub struct Outcome {
+    /// The files, still open, and the rows of all accepted steps.
+    pub recorder: Recorder,
+    /// Work done.
+    pub counts: Counts,
+    /// Why it stopped before the end, if it did.
+    pub failure: Option<Failure>,
+    /// PETSc's direct solver in use.
+    pub factor_solver: Option<String>,
+    /// Unknowns over all ranks.
+    pub unknowns: usize,
+    /// Processor time of all ranks, s.
+    pub cpu_seconds: f64,
+    /// Time on the clock, s.
+    pub wall_seconds: f64,
+}
+
+/// The step that could not be solved.
+pub struct Failure {
+    /// Time of the last accepted step, ms.
+    pub time: f64,
+    /// Depth of the punch there, mm.
+    pub depth: f64,
+    /// PETSc's reason in words.
+    pub reason: String,
+    /// The solves that were refused, longest step first.
+    pub refusals: Vec<Refusal>,
+}
+
+impl Failure {
+    /// Where and why, in one sentence.
+    pub fn sentence(&self) -> String {
+        let last = self.refusals.last().map_or_else(String::new, |r| format!("; last tried: {r}"));
+        format!("at t = {:.6} ms: {}{last}", self.time, self.reason)
+    }
+}
+
+/// Runs the case to its end or to the step that cannot be solved. Collective.
+///
+/// # Errors
+/// If the run cannot be set up, or PETSc or a file fails on the way.
+pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome>, RunError> {
+    let clock = Instant::now();
+    let problem = Problem::new(case);
+    let motion = problem.motion;
+    let landmarks = landmarks(case)?;
+    let system = Rc::new(System::new(problem, comm.duplicate())?);
+    let unknowns = system.unknown_count();
+    let recorder = Recorder::new(case, &system)?;
+    let simulation = Rc::new(Simulation::new(case, system, recorder, landmarks)?);
+    let Some(finish) = simulation.run(case)? else {
+        return Ok(None);
+    };
+    let failure = finish.reason.is_diverged().then(|| Failure {
+        time: finish.time,
+        depth: motion.depth(finish.time),
+        reason: finish.reason.sentence().to_owned(),
+        refusals: finish.refusals,
+    });
+    let mine = cpu_time::ProcessTime::now().as_duration().as_secs_f64();
+    let mut cpu_seconds = 0.0;
+    comm.all_reduce_into(&mine, &mut cpu_seconds, SystemOperation::sum());
+    let simulation = Rc::into_inner(simulation)
+        .ok_or_else(|| CallbackError::from("the time stepper still holds the simulation"))?;
+    Ok(Some(Outcome {
+        cpu_seconds,
+        wall_seconds: clock.elapsed().as_secs_f64(),
+        recorder: simulation.into_recorder(),
+        counts: finish.counts,
+        failure,
+        factor_solver: finish.factor_solver,
+        unknowns,
+    }))
+}
+
+/// Times to hit exactly: both ends, and where reference values are compared.
+fn landmarks(case: &Case) -> Result<Vec<f64>, CaseError> {
+    let motion = case.loading.motion();
+    let mut times = vec![motion.time_load, motion.end()];
+    for value in reference_values()? {
+        if let case::Instant::Travel(depth) = value.when
+            && depth < motion.stroke
+        {
+            times.push(motion.time_at_depth(depth));
+        }
+    }
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    Ok(times)
+}

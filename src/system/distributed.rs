@@ -137,13 +137,16 @@ impl System {
         Ok((lower, upper))
     }
 
+    /// Number of displacements this rank owns; they come first among its rows.
+    pub fn owned_displacements(&self) -> usize {
+        let rows = self.numbering.row_count(self.comm.rank() as usize);
+        rows - UNKNOWNS_PER_POINT * self.local().contacts.len()
+    }
+
     /// Positions of the gaps among the rows this rank owns. They follow the displacements.
     fn owned_gaps(&self) -> impl Iterator<Item = usize> {
-        let rank = self.comm.rank() as usize;
-        let rows = self.numbering.row_count(rank);
-        let points = self.local().contacts.len();
-        let first = rows - UNKNOWNS_PER_POINT * points;
-        (0..points).map(move |point| first + UNKNOWNS_PER_POINT * point + 1)
+        let first = self.owned_displacements();
+        (0..self.local().contacts.len()).map(move |point| first + UNKNOWNS_PER_POINT * point + 1)
     }
 
     /// The undeformed sheet resting on the die, with the gaps it has and a first guess of where it

@@ -18,5 +18,5 @@ pub use local::LocalSystem;
 pub use measure::{Measures, PartialMeasures};
 pub use numbering::{Numbering, UNKNOWNS_PER_POINT};
 pub use problem::Problem;
-pub use sample::{ContactPointSample, FieldSampler};
+pub use sample::{ContactPointSample, FieldSampler, NodeSample};
 pub use seed::Seed;

@@ -1,6 +1,6 @@
 //! Fields for pictures: nodal averages of what the Gauss points say, and the contact points' values.
 
-use super::LocalSystem;
+use super::{LocalSystem, System, SystemError};
 use super::evaluate::ElementFailure;
 use crate::element::{gauss_points, shape};
 use crate::mesh::SurfaceSide;
@@ -25,6 +25,24 @@ pub struct ContactPointSample {
     pub active: bool,
 }
 
+/// What is known at a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NodeSample {
+    /// Displacement, mm.
+    pub displacement: [f64; 2],
+    /// Cauchy stress xx, yy, zz, xy, MPa.
+    pub stress: [f64; 4],
+    /// Von Mises stress of that stress, MPa.
+    pub von_mises_stress: f64,
+    /// Equivalent plastic strain.
+    pub equivalent_plastic_strain: f64,
+    /// Contact pressure, averaged over the half edges at the node, MPa.
+    pub contact_pressure: f64,
+    /// Signed distance to the tool the node's face can touch (inside the sheet: to the nearer tool),
+    /// mm.
+    pub gap: f64,
+}
+
 /// Extrapolates Gauss point values to the nodes of an element by a least squares bilinear fit.
 #[derive(Clone, Debug)]
 pub struct FieldSampler {
@@ -32,7 +50,64 @@ pub struct FieldSampler {
     weights: Vec<[f64; 8]>,
 }
 
+impl System {
+    /// What is known at each local node at time `t` (ms) and local unknowns `u`. Averages are over the
+    /// elements of all ranks, so they do not depend on the partition. Collective.
+    ///
+    /// # Errors
+    /// If PETSc fails or an element cannot be evaluated.
+    pub fn node_samples(
+        &self,
+        sampler: &FieldSampler,
+        t: f64,
+        u: &[f64],
+    ) -> Result<Vec<NodeSample>, SystemError> {
+        let mut sums = self.local().nodal_sums(sampler, u)?;
+        let mut pairs = vec![0.0; u.len()];
+        for first in (0..NODE_CHANNELS).step_by(2) {
+            pairs.fill(0.0);
+            for (pair, sum) in pairs.chunks_exact_mut(2).zip(&sums) {
+                pair.copy_from_slice(&sum[first..first + 2]);
+            }
+            self.sum_over_ranks(&mut pairs)?;
+            for (pair, sum) in pairs.chunks_exact(2).zip(&mut sums) {
+                sum[first..first + 2].copy_from_slice(pair);
+            }
+        }
+        let gaps = self.local().nodal_gaps(t, u);
+        let displacements = u.chunks_exact(2);
+        Ok(sums
+            .iter()
+            .zip(gaps)
+            .zip(displacements)
+            .map(|((sum, gap), displacement)| {
+                let [xx, yy, zz, xy, plastic] = [0, 1, 2, 3, 4].map(|i| sum[i] / sum[5]);
+                let differences =
+                    (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
+                NodeSample {
+                    displacement: [displacement[0], displacement[1]],
+                    stress: [xx, yy, zz, xy],
+                    von_mises_stress: (0.5 * differences + 3.0 * xy * xy).sqrt(),
+                    equivalent_plastic_strain: plastic.max(0.0),
+                    contact_pressure: if sum[7] > 0.0 { (sum[6] / sum[7]).max(0.0) } else { 0.0 },
+                    gap,
+                }
+            })
+            .collect())
+    }
+}
+
 impl LocalSystem {
+    /// Reference coordinates of the local nodes, mm.
+    pub fn node_coordinates(&self) -> &[[f64; 2]] {
+        &self.coordinates
+    }
+
+    /// Local nodes of the local elements, in VTK's order.
+    pub fn element_nodes(&self) -> &[[usize; 8]] {
+        &self.connectivity
+    }
+
     /// The sampler for this problem's Gauss rule.
     pub fn field_sampler(&self) -> FieldSampler {
         let points = gauss_points(self.problem.quadrature);

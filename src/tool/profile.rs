@@ -223,13 +223,14 @@ impl Profile {
         })
     }
 
-    /// The profile as a polyline with at most `spacing` (mm) between points, for pictures.
+    /// The profile as a polyline with at most `spacing` (mm) between points, for pictures. The middle
+    /// of every arc is a point.
     pub fn polyline(&self, spacing: f64) -> Vec<[f64; 2]> {
         let mut points: Vec<[f64; 2]> = Vec::new();
         for piece in &self.pieces {
             let divisions = match piece {
                 Piece::Segment { .. } => 1,
-                Piece::Arc { .. } => (piece.length() / spacing).ceil().max(1.0) as usize,
+                Piece::Arc { .. } => 2 * (0.5 * piece.length() / spacing).ceil().max(1.0) as usize,
             };
             let first = usize::from(!points.is_empty());
             points.extend((first..=divisions).map(|k| piece.at(k as f64 / divisions as f64)));

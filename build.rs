@@ -1,0 +1,32 @@
+//! Bakes provenance into the program: git revision and the PETSc it is built against.
+
+use std::process::Command;
+
+fn main() {
+    println!("cargo:rerun-if-changed=build.rs");
+    println!("cargo:rerun-if-changed=.git/HEAD");
+    println!("cargo:rerun-if-changed=.git/refs");
+    println!("cargo:rustc-env=SSNP155_REVISION={}", revision());
+    println!("cargo:rustc-env=SSNP155_PETSC={}", petsc_version());
+}
+
+/// The commit, with a mark if tracked files differ from it; `unknown` outside a repository.
+fn revision() -> String {
+    let git = |args: &[&str]| {
+        let output = Command::new("git").args(args).output().ok()?;
+        let text = String::from_utf8(output.stdout).ok()?;
+        output.status.success().then(|| text.trim().to_owned())
+    };
+    match git(&["rev-parse", "--short=12", "HEAD"]) {
+        Some(commit) => match git(&["status", "--porcelain", "--untracked-files=no"]) {
+            Some(changes) if changes.is_empty() => commit,
+            _ => format!("{commit}-modified"),
+        },
+        None => "unknown".to_owned(),
+    }
+}
+
+fn petsc_version() -> String {
+    let quiet = pkg_config::Config::new().cargo_metadata(false).probe("petsc");
+    quiet.map_or_else(|_| "unknown".to_owned(), |library| library.version)
+}

@@ -1,0 +1,191 @@
+//! The end of a run: verdicts, summary, figures, and the word whether it holds.
+
+use std::collections::BTreeMap;
+
+use mpi::traits::Communicator;
+use petsc::Session;
+
+use super::{Failure, Outcome, RunError};
+use crate::case::{self, Case, Instant, ReferenceValue, reference_values};
+use crate::output::monitor::{failed_banner, finished_banner};
+use crate::output::summary::{Certificates, Counts, Provenance, Status, Summary, Timing};
+use crate::output::{StepRecord, Tolerance, VerdictRow, VerdictTable};
+
+/// Largest share by which punch force may differ from die force and inertia.
+const BALANCE_LIMIT: f64 = 1e-6;
+/// Largest pull of a contact point that is still rounding, N.
+const PULL_LIMIT: f64 = 1e-6;
+
+/// Judges, writes and shows what came out; tells whether the run finished and all verdicts hold.
+/// Collective.
+///
+/// # Errors
+/// If a file cannot be written.
+pub fn conclude(
+    case: &Case,
+    mut outcome: Outcome,
+    session: &Session,
+    comm: &impl Communicator,
+) -> Result<bool, RunError> {
+    let verdicts = judge(case, outcome.recorder.records(), outcome.failure.is_none())?;
+    if comm.rank() == 0 {
+        let summary = summarise(case, &outcome, session, comm, verdicts.clone());
+        summary.write(outcome.recorder.folder().summary())?;
+        outcome.recorder.force_figure()?;
+    }
+    let mut text = format!("\n{}\n", verdicts.text());
+    match &outcome.failure {
+        None => text.push_str(&finished(&outcome, &verdicts)),
+        Some(failure) => text.push_str(&failed(failure, &outcome)),
+    }
+    outcome.recorder.show(&text);
+    Ok(outcome.failure.is_none() && verdicts.failures() == 0)
+}
+
+/// The certificate's limits for every run that got anywhere, and the reference values where the
+/// case is the one they belong to.
+fn judge(case: &Case, records: &[StepRecord], finished: bool) -> Result<VerdictTable, RunError> {
+    let mut table = VerdictTable::default();
+    if finished && case.is_reference()? {
+        for value in reference_values()? {
+            table.rows.push(VerdictRow::new(
+                format!("{}, {}", value.quantity, when(&value)),
+                computed(case, records, &value),
+                value.value,
+                match value.tolerance {
+                    case::Tolerance::Absolute(distance) => Tolerance::Absolute(distance),
+                    case::Tolerance::Relative(share) => Tolerance::Relative(share),
+                },
+                value.unit,
+                value.source,
+            ));
+        }
+    }
+    if records.is_empty() {
+        return Ok(table);
+    }
+    let worst = |badness: fn(&StepRecord) -> f64| {
+        // NaN wins: it must not pass as small.
+        records.iter().map(badness).fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a })
+    };
+    let mut limit = |quantity: &str, value: f64, bound: f64, unit: &str| {
+        let source = "certificate of every step";
+        table.rows.push(VerdictRow::new(quantity, value, bound, Tolerance::AtMost, unit, source));
+    };
+    let penetration = worst(|r| r.max_penetration_mm);
+    limit("deepest penetration", penetration, case.discretisation.penetration_limit, "mm");
+    limit("strongest pull of a contact point", worst(|r| -r.min_contact_force_N), PULL_LIMIT, "N");
+    let imbalance = worst(|r| r.balance_error.abs());
+    limit("punch force less die force and inertia", imbalance, BALANCE_LIMIT, "1");
+    Ok(table)
+}
+
+fn when(value: &ReferenceValue) -> String {
+    match value.when {
+        Instant::Travel(depth) => format!("d = {depth} mm"),
+        Instant::FullStroke => "full stroke".to_owned(),
+        Instant::EndOfUnloading => "end".to_owned(),
+    }
+}
+
+/// Our value for a reference value; NaN, which never holds, if there is none.
+fn computed(case: &Case, records: &[StepRecord], value: &ReferenceValue) -> f64 {
+    let motion = case.loading.motion();
+    let time = match value.when {
+        Instant::Travel(depth) => motion.time_at_depth(depth),
+        Instant::FullStroke => motion.time_load,
+        Instant::EndOfUnloading => motion.end(),
+    };
+    let record = records.iter().find(|record| (record.t_ms - time).abs() < 1e-6);
+    record.map_or(f64::NAN, |record| match value.id.as_str() {
+        id if id.starts_with("dy_a_punch") => record.dy_A_punch_mm,
+        id if id.starts_with("dy_a_sheet") => record.dy_A_sheet_mm,
+        id if id.starts_with("force") => record.force_N,
+        id if id.starts_with("angle") => record.angle_deg,
+        _ => f64::NAN,
+    })
+}
+
+fn summarise(
+    case: &Case,
+    outcome: &Outcome,
+    session: &Session,
+    comm: &impl Communicator,
+    verdicts: VerdictTable,
+) -> Summary {
+    let records = outcome.recorder.records();
+    let mut certificates = Certificates::default();
+    records.iter().for_each(|record| certificates.observe(record));
+    let status = if outcome.failure.is_none() { Status::Finished } else { Status::NotConverged };
+    let text = |value: &str| value.to_owned();
+    Summary {
+        status,
+        reason: outcome.failure.as_ref().map(Failure::sentence),
+        last: records.last().copied(),
+        counts: Counts {
+            steps: outcome.counts.steps,
+            refused_solves: outcome.counts.refused,
+            newton_iterations: outcome.counts.newton,
+            linear_solves: outcome.counts.newton,
+        },
+        tolerances: BTreeMap::from([
+            (text("newton_residual_mm"), case.stepping.newton_tolerance),
+            (text("penetration_mm"), case.discretisation.penetration_limit),
+            (text("pull_N"), PULL_LIMIT),
+            (text("balance"), BALANCE_LIMIT),
+        ]),
+        worst: certificates.worst(),
+        verdicts,
+        provenance: Provenance {
+            version: text(env!("CARGO_PKG_VERSION")),
+            git_revision: text(env!("SSNP155_REVISION")),
+            petsc_version: session.version(),
+            mpi_ranks: comm.size().unsigned_abs(),
+            build: BTreeMap::from([
+                (text("petsc_headers"), text(env!("SSNP155_PETSC"))),
+                (text("direct_solver"), outcome.factor_solver.clone().unwrap_or_default()),
+                (text("unknowns"), outcome.unknowns.to_string()),
+            ]),
+            options: case.options().into_iter().map(|(name, value)| (text(name), value)).collect(),
+        },
+        timing: Timing {
+            cpu_s: outcome.cpu_seconds,
+            wall_s: outcome.wall_seconds,
+        },
+    }
+}
+
+fn effort(outcome: &Outcome) -> Vec<(&'static str, String)> {
+    let counts = &outcome.counts;
+    vec![
+        ("steps", format!("{} accepted, {} solves refused", counts.steps, counts.refused)),
+        ("Newton", format!("{} iterations, {} unknowns", counts.newton, outcome.unknowns)),
+        (
+            "time",
+            format!("{:.1} s of processors, {:.1} s", outcome.cpu_seconds, outcome.wall_seconds),
+        ),
+        ("results", outcome.recorder.folder().path().display().to_string()),
+    ]
+}
+
+fn finished(outcome: &Outcome, verdicts: &VerdictTable) -> String {
+    let title = match verdicts.failures() {
+        0 => "every verdict holds".to_owned(),
+        1 => "but 1 verdict does not hold".to_owned(),
+        count => format!("but {count} verdicts do not hold"),
+    };
+    finished_banner(&title, &effort(outcome))
+}
+
+fn failed(failure: &Failure, outcome: &Outcome) -> String {
+    let place = format!(
+        "after step {}, t = {:.4} ms, punch down by {:.4} mm",
+        outcome.counts.steps, failure.time, failure.depth
+    );
+    let mut facts: Vec<(&str, String)> =
+        failure.refusals.iter().map(|refusal| ("tried", refusal.to_string())).collect();
+    facts.push(("try", "a smaller -dt_max, more -contact_points_per_edge, a larger \
+                        -contact_compliance or a finer mesh".to_owned()));
+    facts.extend(effort(outcome));
+    failed_banner(&place, &failure.reason, &facts)
+}

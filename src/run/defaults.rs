@@ -1,0 +1,39 @@
+//! PETSc options this program chooses; whatever the user gives goes before them.
+
+use petsc::options::set_default;
+
+use crate::case::Case;
+
+/// By how much a step shrinks when its solve is refused.
+pub(super) const CUT_BACK: f64 = 0.25;
+
+/// Options that hold for every case.
+const DEFAULTS: &[(&str, &str)] = &[
+    // Newton on the reduced set of a variational inequality: the primal-dual active set method.
+    ("snes_type", "vinewtonrsls"),
+    // The first residual is the tool's motion times the number of points: no measure of anything.
+    ("snes_rtol", "0"),
+    ("snes_stol", "0"),
+    ("snes_divergence_tolerance", "-1"),
+    ("ksp_type", "preonly"),
+    ("pc_type", "lu"),
+    ("pc_factor_mat_solver_type", "mumps"),
+    // In two dimensions approximate minimum degree orders fastest and fills hardly more.
+    ("mat_mumps_icntl_7", "0"),
+    // Step size is ours; PETSc's part is to cut back when a solve is refused.
+    ("ts_adapt_type", "none"),
+    ("ts_max_snes_failures", "-1"),
+    ("ts_max_reject", "1000"),
+    ("ts_max_steps", "1000000"),
+    ("ts_exact_final_time", "stepover"),
+];
+
+/// Puts the defaults into PETSc's option database.
+pub(super) fn set(case: &Case) -> petsc::Result<()> {
+    for (name, value) in DEFAULTS {
+        set_default(name, value)?;
+    }
+    set_default("ts_adapt_scale_solve_failed", &CUT_BACK.to_string())?;
+    set_default("snes_atol", &case.stepping.newton_tolerance.to_string())?;
+    set_default("snes_max_it", &case.stepping.newton_max_iterations.to_string())
+}

@@ -1,0 +1,207 @@
+//! Hands what the run knows to the output: monitor, history, fields, figures.
+
+use std::io::stdout;
+
+use mpi::traits::Communicator;
+
+use crate::case::Case;
+use crate::output::plot::{self, DeformedElement, Shape, View, gather_elements};
+use crate::output::{
+    ContactFile, ContactSample, FieldSample, History, Monitor, OutputDir, OutputError, SheetFile,
+    SheetPart, StepRecord, ToolsFile,
+};
+use crate::system::{NodeSample, System};
+use crate::tool::Profile;
+
+/// Spacing of the points of the drawn tools, mm.
+const TOOL_SPACING: f64 = 0.25;
+/// The same in figures, which look closer.
+const FINE_TOOL_SPACING: f64 = 0.05;
+
+/// All files of a run. They close when it is dropped, which must be before MPI ends.
+pub struct Recorder {
+    folder: OutputDir,
+    monitor: Monitor<std::io::Stdout>,
+    /// On rank 0 only.
+    history: Option<History>,
+    sheet: SheetFile,
+    tools: ToolsFile,
+    contact: ContactFile,
+    part: SheetPart,
+    every: usize,
+    records: Vec<StepRecord>,
+}
+
+impl Recorder {
+    /// Opens the files. Collective.
+    ///
+    /// # Errors
+    /// If a file cannot be made; the same on every rank.
+    pub fn new(case: &Case, system: &System) -> Result<Self, OutputError> {
+        let comm = system.comm();
+        let folder = OutputDir::create(&case.output.dir, comm)?;
+        let local = system.local();
+        let problem = local.problem();
+        let history = if comm.rank() == 0 {
+            Some(History::create(folder.history())?)
+        } else {
+            None
+        };
+        let points: Vec<[f64; 2]> = local
+            .contact_points(0.0, &vec![0.0; local.unknown_count()])
+            .iter()
+            .map(|point| point.reference)
+            .collect();
+        let part = SheetPart {
+            coordinates: local.node_coordinates().to_vec(),
+            quads: local.element_nodes().to_vec(),
+            rank: comm.rank(),
+        };
+        Ok(Self {
+            monitor: Monitor::new(comm.rank(), stdout(), problem.motion.end()),
+            history,
+            sheet: SheetFile::create(folder.fields(), comm, &part)?,
+            part,
+            tools: ToolsFile::create(
+                folder.tools(),
+                comm,
+                &problem.die.polyline(TOOL_SPACING),
+                &problem.punch.polyline(TOOL_SPACING),
+            )?,
+            contact: ContactFile::create(folder.contact(), comm, &points)?,
+            every: case.output.every,
+            folder,
+            records: Vec::new(),
+        })
+    }
+
+    /// Where the files are.
+    pub fn folder(&self) -> &OutputDir {
+        &self.folder
+    }
+
+    /// The rows so far.
+    pub fn records(&self) -> &[StepRecord] {
+        &self.records
+    }
+
+    /// Shows the header of the step lines.
+    pub fn begin(&mut self) {
+        self.monitor.header();
+    }
+
+    /// Shows a text to the user, once over all ranks.
+    pub fn show(&mut self, text: &str) {
+        self.monitor.show(text);
+    }
+
+    /// Takes an accepted step. Collective.
+    ///
+    /// # Errors
+    /// If the history cannot be written.
+    pub fn step(&mut self, record: &StepRecord) -> Result<(), OutputError> {
+        self.monitor.step(record);
+        self.records.push(*record);
+        match &mut self.history {
+            Some(history) => history.append(record),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether the fields of the last step are due; the ends of loading and unloading always are.
+    pub fn fields_due(&self, is_end: bool) -> bool {
+        is_end || (self.every > 0 && self.records.len() % self.every == 0)
+    }
+
+    /// Draws the deformed sheet between the tools at time `t` (ms), under the name `label`. Collective.
+    ///
+    /// # Errors
+    /// If the figure cannot be written.
+    pub fn shape(
+        &self,
+        label: &str,
+        t: f64,
+        nodes: &[NodeSample],
+        system: &System,
+    ) -> Result<(), OutputError> {
+        let samples: Vec<FieldSample> = nodes.iter().map(field_sample).collect();
+        let elements = gather_elements(system.comm(), &DeformedElement::of(&self.part, &samples));
+        if self.history.is_none() {
+            return Ok(());
+        }
+        let local = system.local();
+        let problem = local.problem();
+        let depth = problem.motion.depth(t);
+        let right_half = |profile: &Profile| -> Vec<[f64; 2]> {
+            let points = profile.polyline(FINE_TOOL_SPACING);
+            points.into_iter().filter(|point| point[0] > -1e-9).collect()
+        };
+        let die = right_half(&problem.die);
+        let mut punch = right_half(&problem.punch);
+        // The punch is walked from its side to its tip; the figure wants it the other way.
+        punch.reverse();
+        let figure = Shape {
+            title: &format!("{label}: punch down by {depth:.2} mm"),
+            elements: &elements,
+            die: &die,
+            punch: &punch,
+            stroke_mm: depth,
+            plastic_strain_max: None,
+            view: View::Whole,
+        };
+        let name = format!("shape-{}.svg", label.replace(' ', "-"));
+        plot::shape(self.folder.file(&name), &figure)
+    }
+
+    /// Draws force against stroke, on rank 0.
+    ///
+    /// # Errors
+    /// If the figure cannot be written.
+    pub fn force_figure(&self) -> Result<(), OutputError> {
+        if self.history.is_none() || self.records.is_empty() {
+            return Ok(());
+        }
+        plot::force(self.folder.force_figure(), "Force of the punch, whole sheet", &self.records)
+    }
+
+    /// Writes the fields at time `t` (ms) with the local values of the unknowns. Collective.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn fields(
+        &mut self,
+        t: f64,
+        nodes: &[NodeSample],
+        system: &System,
+        values: &[f64],
+    ) -> Result<(), OutputError> {
+        let local = system.local();
+        let samples: Vec<FieldSample> = nodes.iter().map(field_sample).collect();
+        let points: Vec<ContactSample> = local
+            .contact_points(t, values)
+            .iter()
+            .map(|point| ContactSample {
+                displacement: point.displacement,
+                contact_pressure: point.pressure,
+                friction_traction: 0.0,
+                gap: point.gap,
+                contact_status: i32::from(point.active),
+            })
+            .collect();
+        self.sheet.write(t, &samples)?;
+        self.tools.write(t, local.problem().motion.depth(t))?;
+        self.contact.write(t, &points)
+    }
+}
+
+fn field_sample(node: &NodeSample) -> FieldSample {
+    FieldSample {
+        displacement: node.displacement,
+        stress: node.stress,
+        von_mises_stress: node.von_mises_stress,
+        equivalent_plastic_strain: node.equivalent_plastic_strain,
+        contact_pressure: node.contact_pressure,
+        gap: node.gap,
+        contact_status: i32::from(node.contact_pressure > 0.0),
+    }
+}

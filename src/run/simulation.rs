@@ -1,0 +1,335 @@
+//! One simulation: PETSc's time stepper with our residual, and what happens around each step.
+
+use std::cell::{Cell, RefCell};
+use std::rc::Rc;
+
+use petsc::{CallbackError, SnesReason, SnesRef, Ts, TsReason, TsRef, Vector, VectorRef};
+
+use super::ledger::{Ledger, StepEffort};
+use super::newton::Damping;
+use super::recorder::Recorder;
+use super::refusal::Refusal;
+use super::step_size::StepControl;
+use super::{RunError, defaults};
+use crate::case::{Case, Dynamics, check_unused};
+use crate::output::StepRecord;
+use crate::system::{FieldSampler, System};
+
+/// What the hooks of the time stepper share.
+pub(super) struct Simulation {
+    system: Rc<System>,
+    sampler: FieldSampler,
+    recorder: RefCell<Recorder>,
+    control: RefCell<StepControl>,
+    ledger: RefCell<Ledger>,
+    damping: RefCell<Damping>,
+    /// Solution before the last accepted step, and the length of that step (ms); none at the start
+    /// and where the punch turns.
+    before: RefCell<Option<(Vector, f64)>>,
+    /// The last accepted solution.
+    accepted: RefCell<Vector>,
+    accepted_time: Cell<f64>,
+    extrapolate: bool,
+    /// Length of the step being tried, ms.
+    attempted: Cell<f64>,
+    least_step: f64,
+    turning_time: f64,
+    /// Solves of the present step so far.
+    refusals: RefCell<Vec<Refusal>>,
+    counts: Cell<Counts>,
+}
+
+/// Work done over the run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Solves refused.
+    pub refused: u64,
+    /// Newton iterations of all solves; each is one linear solve.
+    pub newton: u64,
+}
+
+/// How a simulation ended.
+pub(super) struct Finish {
+    pub reason: TsReason,
+    pub counts: Counts,
+    /// Why the solves of the last step were refused, if it never was accepted.
+    pub refusals: Vec<Refusal>,
+    pub time: f64,
+    /// PETSc's direct solver in use.
+    pub factor_solver: Option<String>,
+}
+
+impl Simulation {
+    pub(super) fn new(
+        case: &Case,
+        system: Rc<System>,
+        recorder: Recorder,
+        landmarks: Vec<f64>,
+    ) -> Result<Self, RunError> {
+        let stepping = &case.stepping;
+        let accepted = system.initial_unknowns()?;
+        let sampler = system.local().field_sampler();
+        Ok(Self {
+            sampler,
+            recorder: RefCell::new(recorder),
+            control: RefCell::new(StepControl::new(
+                stepping.dt_initial,
+                stepping.dt_max,
+                landmarks,
+            )),
+            ledger: RefCell::default(),
+            damping: RefCell::default(),
+            before: RefCell::new(None),
+            accepted: RefCell::new(accepted),
+            accepted_time: Cell::new(0.0),
+            extrapolate: stepping.extrapolate,
+            attempted: Cell::new(0.0),
+            least_step: stepping.dt_min,
+            turning_time: case.loading.time_load,
+            refusals: RefCell::default(),
+            counts: Cell::default(),
+            system,
+        })
+    }
+
+    /// Runs to the end of the motion or until a step cannot be solved. Collective.
+    pub(super) fn run(self: &Rc<Self>, case: &Case) -> Result<Option<Finish>, RunError> {
+        defaults::set(case)?;
+        let mut ts = Ts::new(self.system.comm())?;
+        self.set_problem(&mut ts, case.loading.dynamics)?;
+        self.set_hooks(&mut ts)?;
+        let (lower, upper) = self.system.bounds()?;
+        ts.snes_mut()?.set_type("vinewtonrsls")?;
+        ts.set_from_options()?;
+        ts.snes_mut()?.set_variable_bounds(&lower, &upper)?;
+        ts.set_time_step(self.control.borrow().planned())?;
+        ts.set_max_time(self.control.borrow().end())?;
+        if petsc::options::has("help")? {
+            return Ok(None);
+        }
+        refuse_unknown_options()?;
+        self.write_fields(0.0, &self.accepted.borrow(), None)?;
+        self.recorder.borrow_mut().begin();
+        let reason = ts.solve()?;
+        let factor_solver = ts.snes()?.ksp()?.factor_solver()?;
+        Ok(Some(Finish {
+            reason,
+            counts: self.counts.get(),
+            refusals: self.refusals.take(),
+            time: self.accepted_time.get(),
+            factor_solver,
+        }))
+    }
+
+    /// Gives the recorder back when the time stepper is gone.
+    pub(super) fn into_recorder(self) -> Recorder {
+        self.recorder.into_inner()
+    }
+
+    fn set_problem(self: &Rc<Self>, ts: &mut Ts, dynamics: Dynamics) -> Result<(), RunError> {
+        let start = self.accepted.borrow();
+        let matrix = self.system.matrix()?;
+        let (for_residual, for_jacobian) = (Rc::clone(&self.system), Rc::clone(&self.system));
+        match dynamics {
+            Dynamics::Slow => {
+                ts.set_second_order(
+                    &start,
+                    matrix,
+                    move |t, u, _, a, out| for_residual.residual(t, u, Some(a), out),
+                    move |t, u, _, _, _, shift, out| {
+                        Ok(for_jacobian.jacobian(t, u, shift, out).map_err(not_evaluated)?)
+                    },
+                )?;
+                let mut still = self.system.vector()?;
+                still.set_all(0.0)?;
+                ts.set_solution2(&start, &still)?;
+                // Radius 0 puts contact, stress and inertia at the end of the step, and damps the
+                // frequencies the step cannot resolve within one step.
+                ts.alpha2_set_radius(0.0)?;
+            }
+            Dynamics::None => {
+                ts.set_implicit(
+                    &start,
+                    matrix,
+                    move |t, u, _, out| for_residual.residual(t, u, None, out),
+                    move |t, u, _, _, out| {
+                        Ok(for_jacobian.jacobian(t, u, 0.0, out).map_err(not_evaluated)?)
+                    },
+                )?;
+                ts.set_solution(&start)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn set_hooks(self: &Rc<Self>, ts: &mut Ts) -> Result<(), RunError> {
+        let this = Rc::clone(self);
+        ts.set_pre_stage(move |ts, _| this.before_solve(ts))?;
+        let this = Rc::clone(self);
+        ts.set_post_stage(move |ts, t, _| this.after_solve(ts, t))?;
+        let this = Rc::clone(self);
+        ts.set_post_step(move |ts| this.after_step(ts))?;
+        let snes = ts.snes_mut()?;
+        let this = Rc::clone(self);
+        snes.set_initial_guess(move |guess| this.extrapolate(guess))?;
+        let this = Rc::clone(self);
+        snes.set_shell_line_search(move |info| {
+            let iteration = info.iteration.unsigned_abs() as usize;
+            Ok(this.damping.borrow_mut().step_length(iteration, info.residual_norm))
+        })?;
+        Ok(())
+    }
+
+    fn before_solve(&self, ts: &mut TsRef) -> Result<(), CallbackError> {
+        self.attempted.set(ts.time_step()?);
+        Ok(())
+    }
+
+    /// Moves the start of a solve on along the last step: displacements only, with multipliers, gaps
+    /// and so the active set as they were. Not after a refused solve, nor where the punch turns.
+    fn extrapolate(&self, guess: &mut VectorRef) -> Result<(), CallbackError> {
+        let before = self.before.borrow();
+        let Some((before, last_dt)) = before.as_ref() else {
+            return Ok(());
+        };
+        if !self.extrapolate || !self.refusals.borrow().is_empty() {
+            return Ok(());
+        }
+        let ratio = self.attempted.get() / last_dt;
+        let accepted = self.accepted.borrow();
+        let (now, before) = (accepted.read()?, before.read()?);
+        let mut guess = guess.write()?;
+        for i in 0..self.system.owned_displacements() {
+            guess[i] = now[i] + ratio * (now[i] - before[i]);
+        }
+        Ok(())
+    }
+
+    fn after_solve(&self, ts: &mut TsRef, t: f64) -> Result<(), CallbackError> {
+        let snes: &SnesRef = ts.snes()?;
+        let reason: SnesReason = snes.converged_reason()?;
+        let iterations = snes.iteration_number()?.unsigned_abs();
+        let mut counts = self.counts.get();
+        counts.newton += u64::from(iterations);
+        if reason.is_diverged() {
+            counts.refused += 1;
+            self.refusals.borrow_mut().push(Refusal {
+                time: t,
+                dt: ts.time_step()?,
+                reason,
+                iterations,
+                norms: self.damping.borrow().norms().to_vec(),
+                element: self.system.take_failure(),
+            });
+        }
+        self.counts.set(counts);
+        // PETSc would go on shortening the step: stop it where shorter steps are not allowed.
+        let next = ts.time_step()? * defaults::CUT_BACK;
+        if reason.is_diverged() && next < self.least_step {
+            ts.set_max_step_rejections(0)?;
+        }
+        Ok(())
+    }
+
+    fn after_step(&self, ts: &mut TsRef) -> Result<(), CallbackError> {
+        if ts.converged_reason()?.is_diverged() {
+            return Ok(());
+        }
+        let t = ts.time()?;
+        let dt = t - self.accepted_time.get();
+        let record = self.accept(ts, t, dt)?;
+        let (next, ended) = {
+            let mut control = self.control.borrow_mut();
+            let next = control.accepted(t, dt, record.newton_iterations as usize);
+            (next, control.is_at(t, control.end()))
+        };
+        let turning = self.control.borrow().is_at(t, self.turning_time);
+        let label = match (turning, ended) {
+            (true, _) => Some("full stroke"),
+            (false, true) => Some("end"),
+            (false, false) => None,
+        };
+        if self.recorder.borrow().fields_due(label.is_some()) {
+            self.write_fields(t, ts.solution()?, label)?;
+        }
+        if ended {
+            ts.set_converged_reason(TsReason::ConvergedTime)?;
+        } else {
+            ts.set_time_step(next)?;
+        }
+        Ok(())
+    }
+
+    /// Commits the history at an accepted solution and writes its row.
+    fn accept(&self, ts: &TsRef, t: f64, dt: f64) -> Result<StepRecord, CallbackError> {
+        let solution = ts.solution()?;
+        let velocity = self.velocity(ts)?;
+        self.system.commit(solution)?;
+        let measures = self.system.measures(t, solution, velocity)?;
+        let refused = self.refusals.take().len();
+        let effort = StepEffort {
+            t,
+            dt,
+            depth: self.system.local().problem().motion.depth(t),
+            newton_iterations: ts.snes()?.iteration_number()?.unsigned_abs(),
+            residual_norm: ts.snes()?.function_norm()?,
+            refused_solves: u32::try_from(refused)?,
+        };
+        let record = self.ledger.borrow_mut().record(&effort, &measures);
+        self.recorder.borrow_mut().step(&record)?;
+        let mut counts = self.counts.get();
+        counts.steps += 1;
+        self.counts.set(counts);
+        self.remember(solution, t, dt)?;
+        Ok(record)
+    }
+
+    fn velocity<'a>(&self, ts: &'a TsRef) -> Result<Option<&'a VectorRef>, CallbackError> {
+        if self.system.local().problem().density > 0.0 {
+            Ok(Some(ts.solution2()?.1))
+        } else {
+            Ok(None)
+        }
+    }
+
+    fn remember(&self, solution: &VectorRef, t: f64, dt: f64) -> Result<(), CallbackError> {
+        let turned = self.control.borrow().is_at(t, self.turning_time);
+        let before = self.accepted.replace(solution.to_owned()?);
+        self.before.replace(if turned { None } else { Some((before, dt)) });
+        self.accepted_time.set(t);
+        Ok(())
+    }
+
+    fn write_fields(
+        &self,
+        t: f64,
+        solution: &VectorRef,
+        label: Option<&str>,
+    ) -> Result<(), CallbackError> {
+        let values = self.system.local_values(solution)?;
+        let nodes = self.system.node_samples(&self.sampler, t, &values)?;
+        let mut recorder = self.recorder.borrow_mut();
+        recorder.fields(t, &nodes, &self.system, &values)?;
+        if let Some(label) = label {
+            recorder.shape(label, t, &nodes, &self.system)?;
+        }
+        Ok(())
+    }
+}
+
+/// Everything that reads options has read them: what is left over is a slip of the pen, unless
+/// PETSc reads it later.
+fn refuse_unknown_options() -> Result<(), RunError> {
+    let (errors, _) = check_unused(&petsc::options::unused()?);
+    errors.into_iter().next().map_or(Ok(()), |error| Err(error.into()))
+}
+
+/// The tangent is asked for where the residual was evaluated before: it cannot fail alone.
+fn not_evaluated(failure: petsc::Failure) -> CallbackError {
+    match failure {
+        petsc::Failure::Fatal(error) => error,
+        petsc::Failure::Domain => "the tangent cannot be evaluated where the residual was".into(),
+    }
+}
