@@ -27,6 +27,8 @@ fn revision() -> String {
 }
 
 fn petsc_version() -> String {
-    let quiet = pkg_config::Config::new().cargo_metadata(false).probe("petsc");
+    let quiet = pkg_config::Config::new()
+        .cargo_metadata(false)
+        .probe("petsc");
     quiet.map_or_else(|_| "unknown".to_owned(), |library| library.version)
 }

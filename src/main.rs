@@ -40,7 +40,10 @@ fn program(world: &SimpleCommunicator, args: &[String]) -> Result<bool, Refused>
     agree(world, check_arguments(&args[1..]))?;
     let session = agree(world, Session::with_help(args, &help_text()))?;
     let case = agree(world, Case::read(&PetscOptions))?;
-    agree(world, check_ranks(world.size().unsigned_abs() as usize, &case))?;
+    agree(
+        world,
+        check_ranks(world.size().unsigned_abs() as usize, &case),
+    )?;
     let outcome = agree(world, simulate(&case, world))?;
     match outcome {
         Some(outcome) => agree(world, conclude(&case, outcome, &session, world)),
@@ -50,11 +53,12 @@ fn program(world: &SimpleCommunicator, args: &[String]) -> Result<bool, Refused>
 }
 
 /// The value if every rank has one; otherwise the lowest rank that failed says why. Collective.
-fn agree<T, E: Display>(
-    world: &SimpleCommunicator,
-    mine: Result<T, E>,
-) -> Result<T, Refused> {
-    let vote = if mine.is_err() { world.rank() } else { i32::MAX };
+fn agree<T, E: Display>(world: &SimpleCommunicator, mine: Result<T, E>) -> Result<T, Refused> {
+    let vote = if mine.is_err() {
+        world.rank()
+    } else {
+        i32::MAX
+    };
     let mut lowest = i32::MAX;
     world.all_reduce_into(&vote, &mut lowest, SystemOperation::min());
     match mine {
@@ -75,7 +79,10 @@ impl OptionSource for PetscOptions {
         // PETSc stores an option without a value, and one with an empty value, alike.
         match options::get(name) {
             Ok(Some(value)) => Some(value),
-            _ => options::has(name).ok().filter(|&given| given).map(|_| String::new()),
+            _ => options::has(name)
+                .ok()
+                .filter(|&given| given)
+                .map(|_| String::new()),
         }
     }
 }

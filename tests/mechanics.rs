@@ -32,16 +32,29 @@ fn displacement(size: f64, noise: &mut Noise) -> [[f64; 2]; 8] {
     })
 }
 
-fn force(kernel: &Quad8, u: &[[f64; 2]; 8], material: &VonMises, states: &[PointState]) -> ElementForce {
+fn force(
+    kernel: &Quad8,
+    u: &[[f64; 2]; 8],
+    material: &VonMises,
+    states: &[PointState],
+) -> ElementForce {
     let mut out = ElementForce::ZERO;
-    kernel.internal_force(u, material, states, true, &mut out).unwrap();
+    kernel
+        .internal_force(u, material, states, true, &mut out)
+        .unwrap();
     out
 }
 
 /// States after a first plastic step, so that the second one starts from history.
 fn deformed_states(kernel: &Quad8, u: &[[f64; 2]; 8], material: &VonMises) -> Vec<PointState> {
     (0..kernel.point_count())
-        .map(|q| kernel.point_response(q, u, material, &PointState::VIRGIN).unwrap().0.state)
+        .map(|q| {
+            kernel
+                .point_response(q, u, material, &PointState::VIRGIN)
+                .unwrap()
+                .0
+                .state
+        })
         .collect()
 }
 
@@ -59,8 +72,15 @@ fn the_element_tangent_agrees_with_central_differences() {
                 let (response, ..) = kernel.point_response(q, &u, &material, &states[q]).unwrap();
                 response.state.equivalent_plastic_strain > states[q].equivalent_plastic_strain
             });
-            assert_eq!(yielded, plastic, "strain {size} does not test what it should");
-            let scale = exact.stiffness.iter().flatten().fold(0.0_f64, |m, k| m.max(k.abs()));
+            assert_eq!(
+                yielded, plastic,
+                "strain {size} does not test what it should"
+            );
+            let scale = exact
+                .stiffness
+                .iter()
+                .flatten()
+                .fold(0.0_f64, |m, k| m.max(k.abs()));
             let h = 1e-7;
             for j in 0..16 {
                 let (mut plus, mut minus) = (u, u);
@@ -71,7 +91,10 @@ fn the_element_tangent_agrees_with_central_differences() {
                 for i in 0..16 {
                     let slope = (up.force[i] - down.force[i]) / (2.0 * h);
                     let error = (exact.stiffness[i][j] - slope).abs() / scale;
-                    assert!(error < 2e-7, "{quadrature:?} {size} [{i}][{j}]: {error:.1e}");
+                    assert!(
+                        error < 2e-7,
+                        "{quadrature:?} {size} [{i}][{j}]: {error:.1e}"
+                    );
                     let skew = (exact.stiffness[i][j] - exact.stiffness[j][i]).abs() / scale;
                     assert!(skew < 1e-14);
                 }
@@ -135,7 +158,12 @@ fn elastic_forces_are_the_slope_of_the_stored_energy() {
         plus[j / 2][j % 2] += h;
         minus[j / 2][j % 2] -= h;
         let slope = (energy(&plus) - energy(&minus)) / (2.0 * h);
-        assert!((exact[j] - slope).abs() < 1e-6 * size, "{} {}", exact[j], slope);
+        assert!(
+            (exact[j] - slope).abs() < 1e-6 * size,
+            "{} {}",
+            exact[j],
+            slope
+        );
     }
 }
 
@@ -176,9 +204,21 @@ fn deformed_unknowns(problem: &Problem, seed: u64) -> (f64, Vec<f64>, Vec<f64>) 
 }
 
 /// Residual and dense Jacobian summed over `ranks` parts, in the numbering of one rank.
-fn assemble(problem: &Problem, ranks: usize, t: f64, u: &[f64], a: &[f64], shift: f64) -> (Vec<f64>, Vec<f64>) {
+fn assemble(
+    problem: &Problem,
+    ranks: usize,
+    t: f64,
+    u: &[f64],
+    a: &[f64],
+    shift: f64,
+) -> (Vec<f64>, Vec<f64>) {
     let points = problem.contact_samples.len();
-    let one = Numbering::new(&problem.mesh, &vec![0; problem.mesh.elements.len()], 1, points);
+    let one = Numbering::new(
+        &problem.mesh,
+        &vec![0; problem.mesh.elements.len()],
+        1,
+        points,
+    );
     let parts = partition(&problem.mesh, ranks).unwrap();
     let many = Numbering::new(&problem.mesh, &parts, ranks, points);
     let size = one.row_count(0);
@@ -196,7 +236,9 @@ fn assemble(problem: &Problem, ranks: usize, t: f64, u: &[f64], a: &[f64], shift
         let gather = |x: &[f64]| rows.iter().map(|&r| x[r]).collect::<Vec<f64>>();
         let mut out = vec![0.0; rows.len()];
         local.residual(t, &gather(u), &gather(a), &mut out).unwrap();
-        rows.iter().zip(&out).for_each(|(&r, value)| residual[r] += value);
+        rows.iter()
+            .zip(&out)
+            .for_each(|(&r, value)| residual[r] += value);
         let (pattern_rows, columns) = local.jacobian_pattern();
         let mut values = vec![0.0; local.jacobian_entries()];
         local.jacobian(t, &gather(u), shift, &mut values).unwrap();
@@ -244,7 +286,10 @@ fn assembly_does_not_depend_on_the_partition() {
         let (other_residual, other_jacobian) = assemble(&problem, ranks, t, &u, &a, 2.5);
         let differ = |x: &[f64], y: &[f64]| {
             let size = x.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-            x.iter().zip(y).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs())) / size
+            x.iter()
+                .zip(y)
+                .fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()))
+                / size
         };
         assert!(differ(&residual, &other_residual) < 1e-13);
         assert!(differ(&jacobian, &other_jacobian) < 1e-13);

@@ -75,7 +75,12 @@ pub struct ContactTangent {
 
 impl ContactLaw {
     /// Position of the point and its distance to `tool`, whose points are moved by `shift` (mm).
-    pub fn position(&self, nodes: &[[f64; 2]; 3], tool: &Profile, shift: [f64; 2]) -> PointPosition {
+    pub fn position(
+        &self,
+        nodes: &[[f64; 2]; 3],
+        tool: &Profile,
+        shift: [f64; 2],
+    ) -> PointPosition {
         let mut x = [0.0; 2];
         for (node, n) in nodes.iter().zip(self.shape) {
             x[0] += n * node[0];
@@ -105,8 +110,7 @@ impl ContactLaw {
     pub fn tangent(&self, distance: &Distance, multiplier: f64) -> ContactTangent {
         let [xx, xy, yy] = distance.hessian;
         let hessian = [[xx, xy], [xy, yy]];
-        let slope: [f64; 6] =
-            std::array::from_fn(|i| self.shape[i / 2] * distance.gradient[i % 2]);
+        let slope: [f64; 6] = std::array::from_fn(|i| self.shape[i / 2] * distance.gradient[i % 2]);
         ContactTangent {
             force_u: std::array::from_fn(|i| {
                 std::array::from_fn(|j| {
@@ -132,11 +136,18 @@ mod tests {
     #[test]
     fn the_tangent_agrees_with_central_differences() {
         let tool = die(25.0, 4.0, 60.0);
-        let law = ContactLaw { shape: crate::element::edge_shape(0.3), give: 12.0 };
+        let law = ContactLaw {
+            shape: crate::element::edge_shape(0.3),
+            give: 12.0,
+        };
         let nodes = [[26.2, -1.1], [26.9, -0.7], [26.5, -0.85]];
         let (multiplier, gap, h) = (3e-4, 0.02, 1e-6);
         let rows = |nodes: &[[f64; 2]; 3], multiplier: f64, gap: f64| {
-            law.rows(&law.position(nodes, &tool, [0.0; 2]).distance, multiplier, gap)
+            law.rows(
+                &law.position(nodes, &tool, [0.0; 2]).distance,
+                multiplier,
+                gap,
+            )
         };
         let distance = law.position(&nodes, &tool, [0.0; 2]).distance;
         let exact = law.tangent(&distance, multiplier);
@@ -147,20 +158,35 @@ mod tests {
             minus[j / 2][j % 2] -= h;
             let (up, down) = (rows(&plus, multiplier, gap), rows(&minus, multiplier, gap));
             for i in 0..6 {
-                close(exact.force_u[i][j], (up.force[i] - down.force[i]) / (2.0 * h));
+                close(
+                    exact.force_u[i][j],
+                    (up.force[i] - down.force[i]) / (2.0 * h),
+                );
             }
             close(exact.closure_u[j], (up.closure - down.closure) / (2.0 * h));
             let slope = (up.complementarity - down.complementarity) / (2.0 * h);
             close(exact.complementarity_u[j], slope);
         }
-        let (up, down) = (rows(&nodes, multiplier + h, gap), rows(&nodes, multiplier - h, gap));
+        let (up, down) = (
+            rows(&nodes, multiplier + h, gap),
+            rows(&nodes, multiplier - h, gap),
+        );
         for i in 0..6 {
-            close(exact.force_multiplier[i], (up.force[i] - down.force[i]) / (2.0 * h));
+            close(
+                exact.force_multiplier[i],
+                (up.force[i] - down.force[i]) / (2.0 * h),
+            );
         }
-        close(exact.closure_multiplier, (up.closure - down.closure) / (2.0 * h));
+        close(
+            exact.closure_multiplier,
+            (up.closure - down.closure) / (2.0 * h),
+        );
         let slope = (up.complementarity - down.complementarity) / (2.0 * h);
         close(exact.complementarity_multiplier, slope);
-        let (up, down) = (rows(&nodes, multiplier, gap + h), rows(&nodes, multiplier, gap - h));
+        let (up, down) = (
+            rows(&nodes, multiplier, gap + h),
+            rows(&nodes, multiplier, gap - h),
+        );
         close(exact.closure_gap, (up.closure - down.closure) / (2.0 * h));
         let slope = (up.complementarity - down.complementarity) / (2.0 * h);
         close(exact.complementarity_gap, slope);

@@ -113,7 +113,13 @@ impl Quad8 {
                 out.force[2 * a + 1] += traction[a][1];
             }
             if with_stiffness {
-                add_stiffness(&gradients, &response.tangent, volume, &traction, &mut out.stiffness);
+                add_stiffness(
+                    &gradients,
+                    &response.tangent,
+                    volume,
+                    &traction,
+                    &mut out.stiffness,
+                );
             }
         }
         if with_stiffness {

@@ -100,8 +100,8 @@ impl VonMises {
         let pressure = 3.0 * self.bulk * mean;
         let stress = deviator.map(|e| pressure + 2.0 * self.shear * shrink * e);
         let elastic_strain = deviator.map(|e| mean + shrink * e);
-        let elastic_energy = 4.5 * self.bulk * mean * mean
-            + self.shear * shrink * shrink * norm_squared;
+        let elastic_energy =
+            4.5 * self.bulk * mean * mean + self.shear * shrink * shrink * norm_squared;
 
         let flow = if norm_squared > 0.0 {
             deviator.map(|e| e / norm_squared.sqrt())
@@ -124,7 +124,11 @@ impl VonMises {
             tangent: trial.rotate_tangent(normal, shear),
             state: PointState {
                 cp_inverse: if shrink < 1.0 {
-                    pull_back(f, determinant, &trial.tensor(elastic_strain.map(|e| (2.0 * e).exp())))
+                    pull_back(
+                        f,
+                        determinant,
+                        &trial.tensor(elastic_strain.map(|e| (2.0 * e).exp())),
+                    )
                 } else {
                     state.cp_inverse
                 },
@@ -205,8 +209,14 @@ impl PrincipalStrains {
 /// F C F^T in the plane.
 fn push_forward(f: &[[f64; 2]; 2], c: &[f64; 4]) -> [f64; 3] {
     let fc = [
-        [f[0][0] * c[0] + f[0][1] * c[1], f[0][0] * c[1] + f[0][1] * c[2]],
-        [f[1][0] * c[0] + f[1][1] * c[1], f[1][0] * c[1] + f[1][1] * c[2]],
+        [
+            f[0][0] * c[0] + f[0][1] * c[1],
+            f[0][0] * c[1] + f[0][1] * c[2],
+        ],
+        [
+            f[1][0] * c[0] + f[1][1] * c[1],
+            f[1][0] * c[1] + f[1][1] * c[2],
+        ],
     ];
     [
         fc[0][0] * f[0][0] + fc[0][1] * f[0][1],

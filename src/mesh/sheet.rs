@@ -142,7 +142,11 @@ mod tests {
             }
         }
         for edge in &mesh.surface {
-            let y = if edge.side == SurfaceSide::Bottom { 0.0 } else { 1.0 };
+            let y = if edge.side == SurfaceSide::Bottom {
+                0.0
+            } else {
+                1.0
+            };
             let [left, right, mid] = mesh.edge_nodes(edge).map(|n| mesh.nodes[n]);
             assert!(left[0] < mid[0] && mid[0] < right[0]);
             assert!(left[1] == y && mid[1] == y && right[1] == y);

@@ -66,17 +66,42 @@ fn judge(case: &Case, records: &[StepRecord], finished: bool) -> Result<VerdictT
     }
     let worst = |badness: fn(&StepRecord) -> f64| {
         // NaN wins: it must not pass as small.
-        records.iter().map(badness).fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a })
+        records
+            .iter()
+            .map(badness)
+            .fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a })
     };
     let mut limit = |quantity: &str, value: f64, bound: f64, unit: &str| {
         let source = "certificate of every step";
-        table.rows.push(VerdictRow::new(quantity, value, bound, Tolerance::AtMost, unit, source));
+        table.rows.push(VerdictRow::new(
+            quantity,
+            value,
+            bound,
+            Tolerance::AtMost,
+            unit,
+            source,
+        ));
     };
     let penetration = worst(|r| r.max_penetration_mm);
-    limit("deepest penetration", penetration, case.discretisation.penetration_limit, "mm");
-    limit("strongest pull of a contact point", worst(|r| -r.min_contact_force_N), PULL_LIMIT, "N");
+    limit(
+        "deepest penetration",
+        penetration,
+        case.discretisation.penetration_limit,
+        "mm",
+    );
+    limit(
+        "strongest pull of a contact point",
+        worst(|r| -r.min_contact_force_N),
+        PULL_LIMIT,
+        "N",
+    );
     let imbalance = worst(|r| r.balance_error.abs());
-    limit("punch force less die force and inertia", imbalance, BALANCE_LIMIT, "1");
+    limit(
+        "punch force less die force and inertia",
+        imbalance,
+        BALANCE_LIMIT,
+        "1",
+    );
     Ok(table)
 }
 
@@ -96,7 +121,9 @@ fn computed(case: &Case, records: &[StepRecord], value: &ReferenceValue) -> f64 
         Instant::FullStroke => motion.time_load,
         Instant::EndOfUnloading => motion.end(),
     };
-    let record = records.iter().find(|record| (record.t_ms - time).abs() < 1e-6);
+    let record = records
+        .iter()
+        .find(|record| (record.t_ms - time).abs() < 1e-6);
     record.map_or(f64::NAN, |record| match value.id.as_str() {
         id if id.starts_with("dy_a_punch") => record.dy_A_punch_mm,
         id if id.starts_with("dy_a_sheet") => record.dy_A_sheet_mm,
@@ -115,8 +142,14 @@ fn summarise(
 ) -> Summary {
     let records = outcome.recorder.records();
     let mut certificates = Certificates::default();
-    records.iter().for_each(|record| certificates.observe(record));
-    let status = if outcome.failure.is_none() { Status::Finished } else { Status::NotConverged };
+    records
+        .iter()
+        .for_each(|record| certificates.observe(record));
+    let status = if outcome.failure.is_none() {
+        Status::Finished
+    } else {
+        Status::NotConverged
+    };
     let text = |value: &str| value.to_owned();
     Summary {
         status,
@@ -130,7 +163,10 @@ fn summarise(
         },
         tolerances: BTreeMap::from([
             (text("newton_residual_mm"), case.stepping.newton_tolerance),
-            (text("penetration_mm"), case.discretisation.penetration_limit),
+            (
+                text("penetration_mm"),
+                case.discretisation.penetration_limit,
+            ),
             (text("pull_N"), PULL_LIMIT),
             (text("balance"), BALANCE_LIMIT),
         ]),
@@ -143,10 +179,17 @@ fn summarise(
             mpi_ranks: comm.size().unsigned_abs(),
             build: BTreeMap::from([
                 (text("petsc_headers"), text(env!("SSNP155_PETSC"))),
-                (text("direct_solver"), outcome.factor_solver.clone().unwrap_or_default()),
+                (
+                    text("direct_solver"),
+                    outcome.factor_solver.clone().unwrap_or_default(),
+                ),
                 (text("unknowns"), outcome.unknowns.to_string()),
             ]),
-            options: case.options().into_iter().map(|(name, value)| (text(name), value)).collect(),
+            options: case
+                .options()
+                .into_iter()
+                .map(|(name, value)| (text(name), value))
+                .collect(),
         },
         timing: Timing {
             cpu_s: outcome.cpu_seconds,
@@ -158,13 +201,31 @@ fn summarise(
 fn effort(outcome: &Outcome) -> Vec<(&'static str, String)> {
     let counts = &outcome.counts;
     vec![
-        ("steps", format!("{} accepted, {} solves refused", counts.steps, counts.refused)),
-        ("Newton", format!("{} iterations, {} unknowns", counts.newton, outcome.unknowns)),
+        (
+            "steps",
+            format!(
+                "{} accepted, {} solves refused",
+                counts.steps, counts.refused
+            ),
+        ),
+        (
+            "Newton",
+            format!(
+                "{} iterations, {} unknowns",
+                counts.newton, outcome.unknowns
+            ),
+        ),
         (
             "time",
-            format!("{:.1} s of processors, {:.1} s", outcome.cpu_seconds, outcome.wall_seconds),
+            format!(
+                "{:.1} s of processors, {:.1} s",
+                outcome.cpu_seconds, outcome.wall_seconds
+            ),
         ),
-        ("results", outcome.recorder.folder().path().display().to_string()),
+        (
+            "results",
+            outcome.recorder.folder().path().display().to_string(),
+        ),
     ]
 }
 
@@ -182,10 +243,17 @@ fn failed(failure: &Failure, outcome: &Outcome) -> String {
         "after step {}, t = {:.4} ms, punch down by {:.4} mm",
         outcome.counts.steps, failure.time, failure.depth
     );
-    let mut facts: Vec<(&str, String)> =
-        failure.refusals.iter().map(|refusal| ("tried", refusal.to_string())).collect();
-    facts.push(("try", "a smaller -dt_max, more -contact_points_per_edge, a larger \
-                        -contact_compliance or a finer mesh".to_owned()));
+    let mut facts: Vec<(&str, String)> = failure
+        .refusals
+        .iter()
+        .map(|refusal| ("tried", refusal.to_string()))
+        .collect();
+    facts.push((
+        "try",
+        "a smaller -dt_max, more -contact_points_per_edge, a larger \
+                        -contact_compliance or a finer mesh"
+            .to_owned(),
+    ));
     facts.extend(effort(outcome));
     failed_banner(&place, &failure.reason, &facts)
 }

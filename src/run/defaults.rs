@@ -35,5 +35,8 @@ pub(super) fn set(case: &Case) -> petsc::Result<()> {
     }
     set_default("ts_adapt_scale_solve_failed", &CUT_BACK.to_string())?;
     set_default("snes_atol", &case.stepping.newton_tolerance.to_string())?;
-    set_default("snes_max_it", &case.stepping.newton_max_iterations.to_string())
+    set_default(
+        "snes_max_it",
+        &case.stepping.newton_max_iterations.to_string(),
+    )
 }

@@ -85,7 +85,10 @@ pub struct Failure {
 impl Failure {
     /// Where and why, in one sentence.
     pub fn sentence(&self) -> String {
-        let last = self.refusals.last().map_or_else(String::new, |r| format!("; last tried: {r}"));
+        let last = self
+            .refusals
+            .last()
+            .map_or_else(String::new, |r| format!("; last tried: {r}"));
         format!("at t = {:.6} ms: {}{last}", self.time, self.reason)
     }
 }

@@ -31,7 +31,11 @@ impl Damping {
         let stagnates = iteration >= TRUSTED_ITERATIONS
             && self.norms.len() > 2
             && norm > STAGNATION * self.norms[self.norms.len() - 3];
-        let length = if stagnates && self.last_was_full { DAMPING } else { 1.0 };
+        let length = if stagnates && self.last_was_full {
+            DAMPING
+        } else {
+            1.0
+        };
         self.last_was_full = length == 1.0;
         length
     }

@@ -134,7 +134,10 @@ impl Recorder {
         let depth = problem.motion.depth(t);
         let right_half = |profile: &Profile| -> Vec<[f64; 2]> {
             let points = profile.polyline(FINE_TOOL_SPACING);
-            points.into_iter().filter(|point| point[0] > -1e-9).collect()
+            points
+                .into_iter()
+                .filter(|point| point[0] > -1e-9)
+                .collect()
         };
         let die = right_half(&problem.die);
         let mut punch = right_half(&problem.punch);
@@ -161,7 +164,11 @@ impl Recorder {
         if self.history.is_none() || self.records.is_empty() {
             return Ok(());
         }
-        plot::force(self.folder.force_figure(), "Force of the punch, whole sheet", &self.records)
+        plot::force(
+            self.folder.force_figure(),
+            "Force of the punch, whole sheet",
+            &self.records,
+        )
     }
 
     /// Writes the fields at time `t` (ms) with the local values of the unknowns. Collective.

@@ -139,7 +139,9 @@ impl Simulation {
                     matrix,
                     move |t, u, _, a, out| for_residual.residual(t, u, Some(a), out),
                     move |t, u, _, _, _, shift, out| {
-                        Ok(for_jacobian.jacobian(t, u, shift, out).map_err(not_evaluated)?)
+                        Ok(for_jacobian
+                            .jacobian(t, u, shift, out)
+                            .map_err(not_evaluated)?)
                     },
                 )?;
                 let mut still = self.system.vector()?;
@@ -155,7 +157,9 @@ impl Simulation {
                     matrix,
                     move |t, u, _, out| for_residual.residual(t, u, None, out),
                     move |t, u, _, _, out| {
-                        Ok(for_jacobian.jacobian(t, u, 0.0, out).map_err(not_evaluated)?)
+                        Ok(for_jacobian
+                            .jacobian(t, u, 0.0, out)
+                            .map_err(not_evaluated)?)
                     },
                 )?;
                 ts.set_solution(&start)?;
@@ -177,7 +181,10 @@ impl Simulation {
         let this = Rc::clone(self);
         snes.set_shell_line_search(move |info| {
             let iteration = info.iteration.unsigned_abs() as usize;
-            Ok(this.damping.borrow_mut().step_length(iteration, info.residual_norm))
+            Ok(this
+                .damping
+                .borrow_mut()
+                .step_length(iteration, info.residual_norm))
         })?;
         Ok(())
     }
@@ -297,7 +304,8 @@ impl Simulation {
     fn remember(&self, solution: &VectorRef, t: f64, dt: f64) -> Result<(), CallbackError> {
         let turned = self.control.borrow().is_at(t, self.turning_time);
         let before = self.accepted.replace(solution.to_owned()?);
-        self.before.replace(if turned { None } else { Some((before, dt)) });
+        self.before
+            .replace(if turned { None } else { Some((before, dt)) });
         self.accepted_time.set(t);
         Ok(())
     }
@@ -323,7 +331,10 @@ impl Simulation {
 /// PETSc reads it later.
 fn refuse_unknown_options() -> Result<(), RunError> {
     let (errors, _) = check_unused(&petsc::options::unused()?);
-    errors.into_iter().next().map_or(Ok(()), |error| Err(error.into()))
+    errors
+        .into_iter()
+        .next()
+        .map_or(Ok(()), |error| Err(error.into()))
 }
 
 /// The tangent is asked for where the residual was evaluated before: it cannot fail alone.

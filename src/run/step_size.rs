@@ -76,7 +76,10 @@ impl StepControl {
 
     /// The wanted step, shortened so that the next landmark is hit by equal steps.
     fn clip(&self, t: f64) -> f64 {
-        let next = self.landmarks.iter().find(|&&mark| mark > t && !self.is_at(t, mark));
+        let next = self
+            .landmarks
+            .iter()
+            .find(|&&mark| mark > t && !self.is_at(t, mark));
         let Some(next) = next else {
             return self.wanted;
         };
@@ -104,7 +107,10 @@ mod tests {
             assert!(dt > 0.0 && dt <= 9.0);
             t += dt;
             steps += 1;
-            hit += [30.0, 900.0, 1000.0].iter().filter(|&&m| control.is_at(t, m)).count();
+            hit += [30.0, 900.0, 1000.0]
+                .iter()
+                .filter(|&&m| control.is_at(t, m))
+                .count();
             dt = control.accepted(t, dt, 5);
         }
         assert_eq!(hit, 3);

@@ -62,8 +62,7 @@ impl System {
     pub fn new(problem: Problem, comm: SimpleCommunicator) -> Result<Self, SystemError> {
         let (ranks, rank) = (comm.size() as usize, comm.rank() as usize);
         let parts = partition_on_root(&problem, &comm)?;
-        let numbering =
-            Numbering::new(&problem.mesh, &parts, ranks, problem.contact_samples.len());
+        let numbering = Numbering::new(&problem.mesh, &parts, ranks, problem.contact_samples.len());
         let local = LocalSystem::new(problem, &parts, &numbering, rank);
         let template = Vector::new(&comm, numbering.row_count(rank))?;
         let scatter = Scatter::new(&template, local.rows())?;
@@ -186,7 +185,12 @@ impl System {
     ) -> Evaluation {
         let _event = self.events.residual.begin();
         let mut scratch = self.scratch.borrow_mut();
-        let Scratch { u: local_u, a: local_a, residual, .. } = &mut *scratch;
+        let Scratch {
+            u: local_u,
+            a: local_a,
+            residual,
+            ..
+        } = &mut *scratch;
         self.scatter.forward(u, local_u)?;
         match a {
             Some(a) => self.scatter.forward(a, local_a)?,
@@ -207,7 +211,11 @@ impl System {
     pub fn jacobian(&self, t: f64, u: &VectorRef, shift: f64, out: &mut MatrixRef) -> Evaluation {
         let _event = self.events.jacobian.begin();
         let mut scratch = self.scratch.borrow_mut();
-        let Scratch { u: local_u, jacobian, .. } = &mut *scratch;
+        let Scratch {
+            u: local_u,
+            jacobian,
+            ..
+        } = &mut *scratch;
         self.scatter.forward(u, local_u)?;
         let evaluated = self.local().jacobian(t, local_u, shift, jacobian);
         out.set_values_coo(jacobian)?;
@@ -249,7 +257,12 @@ impl System {
         v: Option<&VectorRef>,
     ) -> Result<Measures, SystemError> {
         let mut scratch = self.scratch.borrow_mut();
-        let Scratch { u: local_u, v: local_v, a, .. } = &mut *scratch;
+        let Scratch {
+            u: local_u,
+            v: local_v,
+            a,
+            ..
+        } = &mut *scratch;
         self.scatter.forward(u, local_u)?;
         match v {
             Some(v) => self.scatter.forward(v, local_v)?,
@@ -259,9 +272,11 @@ impl System {
         let mine = local.measure(t, local_u, local_v, a)?;
         let mut all = PartialMeasures::default();
         let sum = SystemOperation::sum();
-        self.comm.all_reduce_into(&mine.sums[..], &mut all.sums[..], sum);
+        self.comm
+            .all_reduce_into(&mine.sums[..], &mut all.sums[..], sum);
         let max = SystemOperation::max();
-        self.comm.all_reduce_into(&mine.maxima[..], &mut all.maxima[..], max);
+        self.comm
+            .all_reduce_into(&mine.maxima[..], &mut all.maxima[..], max);
         Ok(Measures::from_reduced(&all, local.problem().whole_sheet))
     }
 

@@ -37,7 +37,11 @@ impl LocalSystem {
         self.add_inertia(a, out);
         self.add_contact(t, u, out);
         for &unknown in &self.fixed {
-            out[unknown] = if self.owned[unknown / 2] { u[unknown] } else { 0.0 };
+            out[unknown] = if self.owned[unknown / 2] {
+                u[unknown]
+            } else {
+                0.0
+            };
         }
         Ok(())
     }
@@ -76,7 +80,9 @@ impl LocalSystem {
         for (point, contact) in self.contacts.iter().enumerate() {
             let m = self.multiplier(point);
             let (tool, shift) = self.problem.tool(contact.side, t);
-            let position = contact.law.position(&self.edge_positions(contact, u), tool, shift);
+            let position = contact
+                .law
+                .position(&self.edge_positions(contact, u), tool, shift);
             let rows = contact.law.rows(&position.distance, u[m], u[m + 1]);
             for (i, force) in rows.force.iter().enumerate() {
                 out[2 * contact.nodes[i / 2] + i % 2] += force;
@@ -123,8 +129,12 @@ impl LocalSystem {
     fn contact_jacobian(&self, t: f64, u: &[f64], point: usize, out: &mut [f64]) {
         let contact = &self.contacts[point];
         let (tool, shift) = self.problem.tool(contact.side, t);
-        let position = contact.law.position(&self.edge_positions(contact, u), tool, shift);
-        let tangent = contact.law.tangent(&position.distance, u[self.multiplier(point)]);
+        let position = contact
+            .law
+            .position(&self.edge_positions(contact, u), tool, shift);
+        let tangent = contact
+            .law
+            .tangent(&position.distance, u[self.multiplier(point)]);
         for (i, row) in tangent.force_u.iter().enumerate() {
             out[6 * i..6 * (i + 1)].copy_from_slice(row);
         }

@@ -50,18 +50,31 @@ pub struct LocalSystem {
 
 impl LocalSystem {
     /// The share of `rank`.
-    pub fn new(problem: Problem, partition: &Partition, numbering: &Numbering, rank: usize) -> Self {
+    pub fn new(
+        problem: Problem,
+        partition: &Partition,
+        numbering: &Numbering,
+        rank: usize,
+    ) -> Self {
         let mesh = &problem.mesh;
-        let elements: Vec<usize> =
-            (0..mesh.elements.len()).filter(|&e| partition[e] == rank).collect();
-        let mut nodes: Vec<usize> =
-            elements.iter().flat_map(|&e| mesh.elements[e].iter().copied()).collect();
+        let elements: Vec<usize> = (0..mesh.elements.len())
+            .filter(|&e| partition[e] == rank)
+            .collect();
+        let mut nodes: Vec<usize> = elements
+            .iter()
+            .flat_map(|&e| mesh.elements[e].iter().copied())
+            .collect();
         nodes.sort_unstable();
         nodes.dedup();
-        let local_of: HashMap<usize, usize> =
-            nodes.iter().enumerate().map(|(local, &node)| (node, local)).collect();
-        let connectivity: Vec<[usize; 8]> =
-            elements.iter().map(|&e| mesh.elements[e].map(|node| local_of[&node])).collect();
+        let local_of: HashMap<usize, usize> = nodes
+            .iter()
+            .enumerate()
+            .map(|(local, &node)| (node, local))
+            .collect();
+        let connectivity: Vec<[usize; 8]> = elements
+            .iter()
+            .map(|&e| mesh.elements[e].map(|node| local_of[&node]))
+            .collect();
         let coordinates: Vec<[f64; 2]> = nodes.iter().map(|&n| mesh.nodes[n]).collect();
         let kernels: Vec<Quad8> = elements
             .iter()
@@ -70,7 +83,12 @@ impl LocalSystem {
 
         let mut rows: Vec<i32> = nodes
             .iter()
-            .flat_map(|&n| [numbering.node_row[n] as i32, numbering.node_row[n] as i32 + 1])
+            .flat_map(|&n| {
+                [
+                    numbering.node_row[n] as i32,
+                    numbering.node_row[n] as i32 + 1,
+                ]
+            })
             .collect();
         let mut contacts = Vec::new();
         for (index, edge) in mesh.surface.iter().enumerate() {
@@ -102,7 +120,10 @@ impl LocalSystem {
             .collect();
         let states = vec![PointState::VIRGIN; elements.len() * problem.quadrature.point_count()];
         Self {
-            owned: nodes.iter().map(|&n| numbering.node_owner[n] == rank).collect(),
+            owned: nodes
+                .iter()
+                .map(|&n| numbering.node_owner[n] == rank)
+                .collect(),
             nodes,
             coordinates,
             elements,

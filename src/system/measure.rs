@@ -136,13 +136,14 @@ impl LocalSystem {
                 partial.maxima[4] = partial.maxima[4].max(p);
             }
             let density = self.problem.density;
-            let (velocity, acceleration) =
-                (self.element_values(element, v), self.element_values(element, a));
+            let (velocity, acceleration) = (
+                self.element_values(element, v),
+                self.element_values(element, a),
+            );
             for (i, row) in self.kernels[element].mass().iter().enumerate() {
                 for (j, m) in row.iter().enumerate() {
                     partial.sums[2] -= density * m * acceleration[j][1];
-                    let product =
-                        velocity[i][0] * velocity[j][0] + velocity[i][1] * velocity[j][1];
+                    let product = velocity[i][0] * velocity[j][0] + velocity[i][1] * velocity[j][1];
                     partial.sums[3] += 0.5 * density * m * product;
                 }
             }

@@ -53,7 +53,9 @@ impl Numbering {
                 row
             })
             .collect();
-        let mut next: Vec<usize> = (0..ranks).map(|r| rank_rows[r] + node_unknowns[r]).collect();
+        let mut next: Vec<usize> = (0..ranks)
+            .map(|r| rank_rows[r] + node_unknowns[r])
+            .collect();
         let edge_row = (0..mesh.surface.len())
             .map(|edge| {
                 let row = next[edge_owner(edge)];
@@ -61,7 +63,12 @@ impl Numbering {
                 row
             })
             .collect();
-        Self { node_owner, node_row, edge_row, rank_rows }
+        Self {
+            node_owner,
+            node_row,
+            edge_row,
+            rank_rows,
+        }
     }
 
     /// Rows owned by `rank`.

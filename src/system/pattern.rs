@@ -46,7 +46,11 @@ impl LocalSystem {
         }
         for &unknown in &self.fixed {
             // The owner keeps a one on the diagonal; the others add nothing.
-            let row = if self.owned[unknown / 2] { self.rows[unknown] } else { -1 };
+            let row = if self.owned[unknown / 2] {
+                self.rows[unknown]
+            } else {
+                -1
+            };
             rows.push(row);
             columns.push(row);
         }

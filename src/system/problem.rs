@@ -37,14 +37,23 @@ pub struct Problem {
 impl Problem {
     /// The problem a case describes.
     pub fn new(case: &Case) -> Self {
-        let Tools { punch_radius, die_radius, die_shoulder_radius } = case.tools;
+        let Tools {
+            punch_radius,
+            die_radius,
+            die_shoulder_radius,
+        } = case.tools;
         let (sheet, divisions, loading) = (&case.sheet, &case.discretisation, &case.loading);
         let density = match loading.dynamics {
             Dynamics::Slow => case.material.density,
             Dynamics::None => 0.0,
         };
         Self {
-            mesh: SheetMesh::new(sheet.half_length(), sheet.thickness, divisions.nx, divisions.ny),
+            mesh: SheetMesh::new(
+                sheet.half_length(),
+                sheet.thickness,
+                divisions.nx,
+                divisions.ny,
+            ),
             material: VonMises::new(
                 case.material.young_modulus,
                 case.material.poisson_ratio,

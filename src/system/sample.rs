@@ -1,7 +1,7 @@
 //! Fields for pictures: nodal averages of what the Gauss points say, and the contact points' values.
 
-use super::{LocalSystem, System, SystemError};
 use super::evaluate::ElementFailure;
+use super::{LocalSystem, System, SystemError};
 use crate::element::{gauss_points, shape};
 use crate::mesh::SurfaceSide;
 
@@ -82,14 +82,17 @@ impl System {
             .zip(displacements)
             .map(|((sum, gap), displacement)| {
                 let [xx, yy, zz, xy, plastic] = [0, 1, 2, 3, 4].map(|i| sum[i] / sum[5]);
-                let differences =
-                    (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
+                let differences = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
                 NodeSample {
                     displacement: [displacement[0], displacement[1]],
                     stress: [xx, yy, zz, xy],
                     von_mises_stress: (0.5 * differences + 3.0 * xy * xy).sqrt(),
                     equivalent_plastic_strain: plastic.max(0.0),
-                    contact_pressure: if sum[7] > 0.0 { (sum[6] / sum[7]).max(0.0) } else { 0.0 },
+                    contact_pressure: if sum[7] > 0.0 {
+                        (sum[6] / sum[7]).max(0.0)
+                    } else {
+                        0.0
+                    },
                     gap,
                 }
             })
@@ -124,7 +127,12 @@ impl LocalSystem {
             [0.0, 1.0],
             [-1.0, 0.0],
         ];
-        debug_assert!(nodes.iter().enumerate().all(|(a, &x)| (shape(x)[a] - 1.0).abs() < 1e-12));
+        debug_assert!(
+            nodes
+                .iter()
+                .enumerate()
+                .all(|(a, &x)| (shape(x)[a] - 1.0).abs() < 1e-12)
+        );
         let weights = points
             .iter()
             .map(|([xi, eta], _)| {
@@ -210,7 +218,12 @@ impl LocalSystem {
                 let position = contact.law.position(&nodes, tool, shift);
                 let reference = [0, 1].map(|k| {
                     let at = |n: &usize| self.coordinates[*n][k];
-                    contact.nodes.iter().zip(contact.law.shape).map(|(n, s)| s * at(n)).sum()
+                    contact
+                        .nodes
+                        .iter()
+                        .zip(contact.law.shape)
+                        .map(|(n, s)| s * at(n))
+                        .sum()
                 });
                 ContactPointSample {
                     reference,

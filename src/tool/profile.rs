@@ -60,7 +60,9 @@ impl Piece {
     fn length(&self) -> f64 {
         match *self {
             Piece::Segment { start, end } => (end[0] - start[0]).hypot(end[1] - start[1]),
-            Piece::Arc { radius, from, to, .. } => radius * (to - from).abs(),
+            Piece::Arc {
+                radius, from, to, ..
+            } => radius * (to - from).abs(),
         }
     }
 
@@ -70,9 +72,17 @@ impl Piece {
                 start[0] + share * (end[0] - start[0]),
                 start[1] + share * (end[1] - start[1]),
             ],
-            Piece::Arc { centre, radius, from, to } => {
+            Piece::Arc {
+                centre,
+                radius,
+                from,
+                to,
+            } => {
                 let angle = from + share * (to - from);
-                [centre[0] + radius * angle.cos(), centre[1] + radius * angle.sin()]
+                [
+                    centre[0] + radius * angle.cos(),
+                    centre[1] + radius * angle.sin(),
+                ]
             }
         }
     }
@@ -98,21 +108,29 @@ impl Piece {
                     arc_hessian: [0.0; 3],
                 })
             }
-            Piece::Arc { centre, radius, from, to } => {
+            Piece::Arc {
+                centre,
+                radius,
+                from,
+                to,
+            } => {
                 let from_centre = [x[0] - centre[0], x[1] - centre[1]];
                 let r = from_centre[0].hypot(from_centre[1]);
                 let turn = (to - from).signum();
                 let (angle, radial, r) = if r < CENTRE_RADIUS {
                     let middle = 0.5 * (from + to);
-                    (0.5 * (to - from).abs(), [middle.cos(), middle.sin()], CENTRE_RADIUS)
+                    (
+                        0.5 * (to - from).abs(),
+                        [middle.cos(), middle.sin()],
+                        CENTRE_RADIUS,
+                    )
                 } else {
                     let walked = turn * (from_centre[1].atan2(from_centre[0]) - from);
                     let walked = walked.rem_euclid(std::f64::consts::TAU);
                     (walked, [from_centre[0] / r, from_centre[1] / r], r)
                 };
-                (angle <= (to - from).abs()).then(|| {
-                    arc_distance(radial, r, radius, turn, radius * angle)
-                })
+                (angle <= (to - from).abs())
+                    .then(|| arc_distance(radial, r, radius, turn, radius * angle))
             }
         }
     }
@@ -172,7 +190,11 @@ fn arc_distance(radial: [f64; 2], r: f64, radius: f64, turn: f64, arc: f64) -> D
 
 /// `scale` times (I - n n).
 fn tangential_projector(n: [f64; 2], scale: f64) -> [f64; 3] {
-    [scale * n[1] * n[1], -scale * n[0] * n[1], scale * n[0] * n[0]]
+    [
+        scale * n[1] * n[1],
+        -scale * n[0] * n[1],
+        scale * n[0] * n[0],
+    ]
 }
 
 fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -274,16 +296,39 @@ mod tests {
                     continue;
                 }
                 let close = |a: f64, b: f64, what: &str| {
-                    assert!((a - b).abs() < 1e-7 * (1.0 + b.abs()), "{what} at {x:?}: {a} {b}")
+                    assert!(
+                        (a - b).abs() < 1e-7 * (1.0 + b.abs()),
+                        "{what} at {x:?}: {a} {b}"
+                    )
                 };
                 let slope = |plus: f64, minus: f64| (plus - minus) / (2.0 * h);
                 close(d.gradient[0], slope(right.value, left.value), "gradient x");
                 close(d.gradient[1], slope(up.value, down.value), "gradient y");
-                close(d.hessian[0], slope(right.gradient[0], left.gradient[0]), "hessian xx");
-                close(d.hessian[1], slope(up.gradient[0], down.gradient[0]), "hessian xy");
-                close(d.hessian[2], slope(up.gradient[1], down.gradient[1]), "hessian yy");
-                close(d.arc_gradient[0], slope(right.arc_length, left.arc_length), "arc x");
-                close(d.arc_gradient[1], slope(up.arc_length, down.arc_length), "arc y");
+                close(
+                    d.hessian[0],
+                    slope(right.gradient[0], left.gradient[0]),
+                    "hessian xx",
+                );
+                close(
+                    d.hessian[1],
+                    slope(up.gradient[0], down.gradient[0]),
+                    "hessian xy",
+                );
+                close(
+                    d.hessian[2],
+                    slope(up.gradient[1], down.gradient[1]),
+                    "hessian yy",
+                );
+                close(
+                    d.arc_gradient[0],
+                    slope(right.arc_length, left.arc_length),
+                    "arc x",
+                );
+                close(
+                    d.arc_gradient[1],
+                    slope(up.arc_length, down.arc_length),
+                    "arc y",
+                );
                 let [pr, pl, pu, pd] = [right, left, up, down].map(|d| d.arc_gradient);
                 close(d.arc_hessian[0], slope(pr[0], pl[0]), "arc hessian xx");
                 close(d.arc_hessian[1], slope(pu[0], pd[0]), "arc hessian xy");
