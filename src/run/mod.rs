@@ -100,7 +100,7 @@ impl Failure {
 pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome>, RunError> {
     let clock = Instant::now();
     let problem = Problem::new(case);
-    let motion = problem.motion;
+    let motion = case.loading.motion();
     let landmarks = landmarks(case)?;
     let system = Rc::new(System::new(problem, comm.duplicate())?);
     let unknowns = system.unknown_count();

@@ -3,9 +3,9 @@
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
-use petsc::{CallbackError, SnesReason, SnesRef, Ts, TsReason, TsRef, Vector, VectorRef};
+use petsc::{CallbackError, ConvergenceCheck, SnesReason, SnesRef, Ts, TsReason, TsRef, Vector, VectorRef};
 
-use super::ledger::{Ledger, StepEffort};
+use super::ledger::{LEAST_FORCE, Ledger, StepEffort};
 use super::newton::Damping;
 use super::recorder::Recorder;
 use super::refusal::Refusal;
@@ -14,6 +14,12 @@ use super::{RunError, defaults};
 use crate::case::{Case, Dynamics, check_unused};
 use crate::output::StepRecord;
 use crate::system::{FieldSampler, System};
+use crate::tool::PunchMotion;
+
+/// Largest imbalance of a converged solve as a share of the last punch force.
+const BALANCE_SHARE: f64 = 3e-7;
+/// Below this residual norm (mm) rounding may be all that is left.
+const BALANCE_FLOOR: f64 = 1e-12;
 
 /// What the hooks of the time stepper share.
 pub(super) struct Simulation {
@@ -33,7 +39,7 @@ pub(super) struct Simulation {
     /// Length of the step being tried, ms.
     attempted: Cell<f64>,
     least_step: f64,
-    turning_time: f64,
+    motion: PunchMotion,
     /// Solves of the present step so far.
     refusals: RefCell<Vec<Refusal>>,
     counts: Cell<Counts>,
@@ -87,7 +93,7 @@ impl Simulation {
             extrapolate: stepping.extrapolate,
             attempted: Cell::new(0.0),
             least_step: stepping.dt_min,
-            turning_time: case.loading.time_load,
+            motion: case.loading.motion(),
             refusals: RefCell::default(),
             counts: Cell::default(),
             system,
@@ -139,9 +145,9 @@ impl Simulation {
                     matrix,
                     move |t, u, _, a, out| for_residual.residual(t, u, Some(a), out),
                     move |t, u, _, _, _, shift, out| {
-                        Ok(for_jacobian
+                        for_jacobian
                             .jacobian(t, u, shift, out)
-                            .map_err(not_evaluated)?)
+                            .map_err(not_evaluated)
                     },
                 )?;
                 let mut still = self.system.vector()?;
@@ -157,9 +163,7 @@ impl Simulation {
                     matrix,
                     move |t, u, _, out| for_residual.residual(t, u, None, out),
                     move |t, u, _, _, out| {
-                        Ok(for_jacobian
-                            .jacobian(t, u, 0.0, out)
-                            .map_err(not_evaluated)?)
+                        for_jacobian.jacobian(t, u, 0.0, out).map_err(not_evaluated)
                     },
                 )?;
                 ts.set_solution(&start)?;
@@ -177,6 +181,8 @@ impl Simulation {
         ts.set_post_step(move |ts| this.after_step(ts))?;
         let snes = ts.snes_mut()?;
         let this = Rc::clone(self);
+        snes.set_convergence_test(move |snes, check| this.balanced(snes, check))?;
+        let this = Rc::clone(self);
         snes.set_initial_guess(move |guess| this.extrapolate(guess))?;
         let this = Rc::clone(self);
         snes.set_shell_line_search(move |info| {
@@ -187,6 +193,27 @@ impl Simulation {
                 .step_length(iteration, info.residual_norm))
         })?;
         Ok(())
+    }
+
+    /// A small residual is not enough: its vertical sum is the imbalance of the tools' forces, which
+    /// must be small against those.
+    fn balanced(
+        &self,
+        snes: &SnesRef,
+        check: &ConvergenceCheck,
+    ) -> Result<SnesReason, CallbackError> {
+        if check.default != SnesReason::ConvergedFnormAbs
+            || check.residual_norm <= BALANCE_FLOOR
+        {
+            return Ok(check.default);
+        }
+        let imbalance = self.system.vertical_sum(snes.function()?)?;
+        let limit = BALANCE_SHARE * self.ledger.borrow().force().abs().max(LEAST_FORCE);
+        Ok(if imbalance.abs() <= limit {
+            check.default
+        } else {
+            SnesReason::ConvergedIterating
+        })
     }
 
     fn before_solve(&self, ts: &mut TsRef) -> Result<(), CallbackError> {
@@ -252,7 +279,7 @@ impl Simulation {
             let next = control.accepted(t, dt, record.newton_iterations as usize);
             (next, control.is_at(t, control.end()))
         };
-        let turning = self.control.borrow().is_at(t, self.turning_time);
+        let turning = self.control.borrow().is_at(t, self.motion.time_load);
         let label = match (turning, ended) {
             (true, _) => Some("full stroke"),
             (false, true) => Some("end"),
@@ -273,13 +300,13 @@ impl Simulation {
     fn accept(&self, ts: &TsRef, t: f64, dt: f64) -> Result<StepRecord, CallbackError> {
         let solution = ts.solution()?;
         let velocity = self.velocity(ts)?;
-        self.system.commit(solution)?;
+        self.system.commit(t, solution)?;
         let measures = self.system.measures(t, solution, velocity)?;
         let refused = self.refusals.take().len();
         let effort = StepEffort {
             t,
             dt,
-            depth: self.system.local().problem().motion.depth(t),
+            depth: self.motion.depth(t),
             newton_iterations: ts.snes()?.iteration_number()?.unsigned_abs(),
             residual_norm: ts.snes()?.function_norm()?,
             refused_solves: u32::try_from(refused)?,
@@ -302,7 +329,7 @@ impl Simulation {
     }
 
     fn remember(&self, solution: &VectorRef, t: f64, dt: f64) -> Result<(), CallbackError> {
-        let turned = self.control.borrow().is_at(t, self.turning_time);
+        let turned = self.control.borrow().is_at(t, self.motion.time_load);
         let before = self.accepted.replace(solution.to_owned()?);
         self.before
             .replace(if turned { None } else { Some((before, dt)) });

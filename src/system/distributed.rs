@@ -222,6 +222,20 @@ impl System {
         self.note(evaluated)
     }
 
+    /// Vertical sum of the equilibrium rows of a residual as a force of the whole sheet, N. Collective.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn vertical_sum(&self, residual: &VectorRef) -> petsc::Result<f64> {
+        let count = self.owned_displacements();
+        let mine: f64 = residual.read()?[..count].chunks_exact(2).map(|xy| xy[1]).sum();
+        let mut sum = 0.0;
+        self.comm.all_reduce_into(&mine, &mut sum, SystemOperation::sum());
+        let local = self.local();
+        let problem = local.problem();
+        Ok(problem.whole_sheet * problem.young_modulus * sum)
+    }
+
     fn note(&self, evaluated: Result<(), ElementFailure>) -> Evaluation {
         evaluated.map_err(|failure| {
             self.failure.replace(Some(failure));
@@ -234,14 +248,14 @@ impl System {
         self.failure.take()
     }
 
-    /// Takes the states at unknowns `u` as history. Collective.
+    /// Takes the states at time `t` and unknowns `u` as history. Collective.
     ///
     /// # Errors
     /// If an element cannot be evaluated at `u`.
-    pub fn commit(&self, u: &VectorRef) -> Result<(), SystemError> {
+    pub fn commit(&self, t: f64, u: &VectorRef) -> Result<(), SystemError> {
         let mut scratch = self.scratch.borrow_mut();
         self.scatter.forward(u, &mut scratch.u)?;
-        self.local.borrow_mut().commit(&scratch.u)?;
+        self.local.borrow_mut().commit(t, &scratch.u)?;
         Ok(())
     }
 
