@@ -202,7 +202,7 @@ impl Simulation {
         snes: &SnesRef,
         check: &ConvergenceCheck,
     ) -> Result<SnesReason, CallbackError> {
-        if check.default != SnesReason::ConvergedFnormAbs
+        if check.default != SnesReason::ConvergedAbsolute
             || check.residual_norm <= BALANCE_FLOOR
         {
             return Ok(check.default);
@@ -212,7 +212,7 @@ impl Simulation {
         Ok(if imbalance.abs() <= limit {
             check.default
         } else {
-            SnesReason::ConvergedIterating
+            SnesReason::Iterating
         })
     }
 
