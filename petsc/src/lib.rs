@@ -1,1 +1,56 @@
-//! Placeholder.
+//! A safe wrapper of the parts of PETSc 3.18 that a contact solver needs.
+//!
+//! In: communicators of rsmpi, plain slices, closures. Out: vectors, matrices, linear, nonlinear and
+//! time-step solvers whose failures are [`Error`]s in Rust. Never: `unsafe` for the user, printing,
+//! or an opinion about mechanics.
+//!
+//! # Owned and borrowed objects
+//! [`Vector`], [`Matrix`], [`Ksp`], [`Snes`] and [`Ts`] own a PETSc object and dereference to
+//! [`VectorRef`], [`MatrixRef`], [`KspRef`], [`SnesRef`] and [`TsRef`], which is also what callbacks
+//! are given. Every owned object keeps the [`Session`] alive, so the order of drops does not matter
+//! as long as all of them happen before MPI ends.
+//!
+//! # Callbacks
+//! Closures are `Fn + 'static` and belong to the PETSc object they are set on; share state with them
+//! through `Rc<RefCell<_>>`. Do not let a closure own (an `Rc` of) the object it is set on: that is
+//! a cycle, and neither would ever be freed.
+//!
+//! A closure's `Err` and its panic travel through PETSc and come out as the `Err` of the outermost
+//! call ([`Error::Callback`], [`Error::Panic`]). After each closure the ranks of the object's
+//! communicator agree on the outcome, so one failing rank makes every rank return (the others with
+//! [`Error::Elsewhere`]). A closure that communicates must therefore reach its last collective call
+//! on every rank even if it has already failed on one.
+
+#![deny(unsafe_op_in_unsafe_fn, clippy::undocumented_unsafe_blocks)]
+#![deny(clippy::unwrap_used, clippy::expect_used)]
+
+mod callback;
+mod error;
+mod factorization;
+mod handle;
+mod ksp;
+mod matrix;
+mod reason;
+mod scatter;
+mod session;
+mod shell;
+mod snes;
+mod ts;
+mod vector;
+
+pub mod log;
+pub mod options;
+
+pub use error::{CallbackError, Error, Evaluation, Failure, Result};
+pub use factorization::{FactorStatus, Factorization};
+pub use ksp::{Ksp, KspRef};
+pub use matrix::{Matrix, MatrixOption, MatrixRef};
+pub use reason::{KspReason, SnesReason, TsReason};
+pub use scatter::Scatter;
+pub use session::{Session, memory_bytes};
+pub use snes::{ConvergenceCheck, LineSearchInfo, Snes, SnesRef, Tolerances};
+pub use ts::{AlphaParameters, ExactFinalTime, Ts, TsRef};
+pub use vector::{ReadGuard, Vector, VectorRef, WriteGuard};
+
+/// The value that stands for "no bound" in bounds of variables (PETSc's `PETSC_INFINITY`).
+pub const INFINITY: f64 = f64::MAX / 4.0;

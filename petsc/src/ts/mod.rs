@@ -1,0 +1,194 @@
+//! Time integration.
+//!
+//! In: a residual and its tangent matrix in time, a start, hooks. Out: the solution at the end and the
+//! reason why it ended. Never: committed state; that is the caller's, after an accepted step.
+//!
+//! # Known failures of PETSc 3.18
+//! - `TS_LINEAR` with TSALPHA2 leaves velocity and acceleration stale without a word. This wrapper
+//!   always says `TS_NONLINEAR`.
+//! - TSALPHA2's start makes the initial acceleration twice too large (mended in PETSc 3.22), which
+//!   leaves first order for a spectral radius below 1. This wrapper takes the first step, and each
+//!   one after [`TsRef::restart_step`], with [`AlphaParameters::START`], which does not need it, and
+//!   puts the parameters back for the next step: second order again. Set your own parameters before
+//!   the solve.
+//! - TSALPHA2's start makes two hidden half steps (pre- and post-stage are called for them too), and
+//!   puts the time step back when one of them fails: the reduction of the *first* step is lost, and
+//!   the same failing solve is repeated until [`TsRef::set_max_step_rejections`] ends the run. To
+//!   recover, make the first step small enough, or lower the time step and solve again after a
+//!   [`TsReason::DivergedStepRejected`] at step 0.
+//! - The first failed nonlinear solve ends the run unless [`TsRef::set_max_snes_failures`] is -1.
+//! - The default adaptor never makes the step larger again.
+//! - A step is repeated inside PETSc: the pre-*stage* hook runs for each attempt, the pre-*step* hook
+//!   only once. The post-step hook runs also after a failed step: look at
+//!   [`TsRef::converged_reason`] first.
+
+mod alpha;
+mod closures;
+mod control;
+
+use std::ptr;
+
+use mpi::topology::Communicator;
+use petsc_sys as sys;
+
+use crate::{
+    SnesRef, TsReason, VectorRef,
+    error::{Result, check},
+    handle::petsc_object,
+    session::{c_string, keep},
+};
+
+pub use alpha::AlphaParameters;
+pub use control::ExactFinalTime;
+
+petsc_object! {
+    /// A time integration.
+    Ts,
+    /// A borrowed [`Ts`], as given to hooks.
+    TsRef,
+    TS, TSDestroy
+}
+
+impl Ts {
+    /// A time integration without a problem. Collective.
+    ///
+    /// # Errors
+    /// If PETSc is not running.
+    pub fn new<C: Communicator>(comm: &C) -> Result<Self> {
+        let keep = keep()?;
+        let mut raw = ptr::null_mut();
+        // SAFETY: a valid communicator; PETSc writes the new object, which is owned at once.
+        unsafe {
+            check(sys::TSCreate(comm.as_raw(), &mut raw))?;
+            let ts = Self::own(raw, keep)?;
+            check(sys::TSSetProblemType(raw, sys::TS_NONLINEAR))?;
+            Ok(ts)
+        }
+    }
+
+    /// Integrates from the present time and solution. Collective.
+    ///
+    /// # Errors
+    /// If PETSc or a closure fails; an integration that gives up is a [`TsReason`].
+    pub fn solve(&mut self) -> Result<TsReason> {
+        self.prepare_start()?;
+        // SAFETY: a live object; null means the solution set before.
+        let solved = check(unsafe { sys::TSSolve(self.raw(), ptr::null_mut()) });
+        self.end_start()?;
+        solved?;
+        self.converged_reason()
+    }
+}
+
+impl TsRef {
+    /// Makes the integration read its options with `prefix` before their names.
+    ///
+    /// # Errors
+    /// If PETSc rejects the prefix.
+    pub fn set_options_prefix(&mut self, prefix: &str) -> Result<()> {
+        let prefix = c_string(prefix)?;
+        // SAFETY: a live object and a C string, which PETSc copies.
+        check(unsafe { sys::TSSetOptionsPrefix(self.raw(), prefix.as_ptr()) })
+    }
+
+    /// Reads the options `-ts_…`, and those of the nonlinear solver.
+    ///
+    /// # Errors
+    /// If an option has an impossible value.
+    pub fn set_from_options(&mut self) -> Result<()> {
+        // SAFETY: a live object.
+        check(unsafe { sys::TSSetFromOptions(self.raw()) })?;
+        self.snes_mut()?.restore_choices()
+    }
+
+    /// The nonlinear solver.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn snes(&self) -> Result<&SnesRef> {
+        let mut snes = ptr::null_mut();
+        // SAFETY: a live object; PETSc writes its solver, which lives as long as itself.
+        unsafe {
+            check(sys::TSGetSNES(self.raw(), &mut snes))?;
+            SnesRef::from_raw(snes)
+        }
+    }
+
+    /// The nonlinear solver, to change it.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn snes_mut(&mut self) -> Result<&mut SnesRef> {
+        let raw = self.snes()?.raw();
+        // SAFETY: the integration is borrowed mutably, and with it its solver.
+        unsafe { SnesRef::from_raw_mut(raw) }
+    }
+
+    /// Sets the solution to start from (a copy is kept).
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn set_solution(&mut self, u: &VectorRef) -> Result<()> {
+        let u = u.to_owned()?;
+        // SAFETY: live objects; PETSc counts its reference to the vector.
+        check(unsafe { sys::TSSetSolution(self.raw(), u.raw()) })
+    }
+
+    /// Sets the solution and velocity to start from (copies are kept).
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn set_solution2(&mut self, u: &VectorRef, v: &VectorRef) -> Result<()> {
+        let (u, v) = (u.to_owned()?, v.to_owned()?);
+        // SAFETY: live objects; PETSc counts its references to the vectors.
+        check(unsafe { sys::TS2SetSolution(self.raw(), u.raw(), v.raw()) })
+    }
+
+    /// The solution at the present time.
+    ///
+    /// # Errors
+    /// If none is set.
+    pub fn solution(&self) -> Result<&VectorRef> {
+        let mut u = ptr::null_mut();
+        // SAFETY: a live object; PETSc writes null or a vector that lives as long as the integration
+        // keeps it, which no method of `&self` ends.
+        unsafe {
+            check(sys::TSGetSolution(self.raw(), &mut u))?;
+            VectorRef::from_raw(u)
+        }
+    }
+
+    /// The solution and velocity at the present time, for a second-order problem.
+    ///
+    /// # Errors
+    /// If none is set.
+    pub fn solution2(&self) -> Result<(&VectorRef, &VectorRef)> {
+        let (mut u, mut v) = (ptr::null_mut(), ptr::null_mut());
+        // SAFETY: as for `solution`.
+        unsafe {
+            check(sys::TS2GetSolution(self.raw(), &mut u, &mut v))?;
+            Ok((VectorRef::from_raw(u)?, VectorRef::from_raw(v)?))
+        }
+    }
+
+    /// Why the integration stopped.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn converged_reason(&self) -> Result<TsReason> {
+        let mut reason = sys::TS_CONVERGED_ITERATING;
+        // SAFETY: a live object, one value to write.
+        check(unsafe { sys::TSGetConvergedReason(self.raw(), &mut reason) })?;
+        Ok(TsReason::from_raw(reason))
+    }
+
+    /// Makes the running integration stop. Call it from the post-step hook: each step begins by
+    /// forgetting the reason.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn set_converged_reason(&mut self, reason: TsReason) -> Result<()> {
+        // SAFETY: a live object.
+        check(unsafe { sys::TSSetConvergedReason(self.raw(), reason.to_raw()) })
+    }
+}
