@@ -57,8 +57,9 @@ pub fn has(name: &str) -> Result<bool> {
 pub fn is_given(name: &str) -> Result<bool> {
     let _keep = keep()?;
     let mut used = sys::PETSC_FALSE;
+    let c_name = c_string(name)?; // this one function wants no dash
     // SAFETY: the global database, a C string, one flag to write.
-    check(unsafe { sys::PetscOptionsUsed(ptr::null_mut(), dashed(name)?.as_ptr(), &mut used) })?;
+    check(unsafe { sys::PetscOptionsUsed(ptr::null_mut(), c_name.as_ptr(), &mut used) })?;
     // PETSc compares names without regard to case.
     Ok(used != sys::PETSC_FALSE
         || unused()?

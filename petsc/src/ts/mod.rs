@@ -62,6 +62,7 @@ impl Ts {
             check(sys::TSCreate(comm.as_raw(), &mut raw))?;
             let ts = Self::own(raw, keep)?;
             check(sys::TSSetProblemType(raw, sys::TS_NONLINEAR))?;
+            check(sys::TSSetErrorIfStepFails(raw, sys::PETSC_FALSE))?;
             Ok(ts)
         }
     }
@@ -69,7 +70,8 @@ impl Ts {
     /// Integrates from the present time and solution. Collective.
     ///
     /// # Errors
-    /// If PETSc or a closure fails; an integration that gives up is a [`TsReason`].
+    /// If PETSc or a closure fails; an integration that gives up is a [`TsReason`] (unless
+    /// [`TsRef::set_error_if_step_fails`] or its option says otherwise).
     pub fn solve(&mut self) -> Result<TsReason> {
         self.prepare_start()?;
         // SAFETY: a live object; null means the solution set before.

@@ -26,7 +26,13 @@ pub fn run(tests: &[Test]) {
         // A test harness's own flags (`--nocapture`, ...) are no options of PETSc.
         let (flags, rest): (Vec<_>, Vec<_>) = args.into_iter().partition(|a| a.starts_with("--"));
         drop(flags);
-        let _session = petsc::Session::new(&rest).unwrap();
+        let session = petsc::Session::new(&rest).unwrap();
+        assert!(
+            session.version().starts_with("3.18."),
+            "{}",
+            session.version()
+        );
+        assert!(session.has_external_package("mumps").unwrap());
         for (name, test) in tests.iter().filter(|(name, _)| name.contains(&filter)) {
             let passed = catch_unwind(AssertUnwindSafe(|| test(&world))).is_ok();
             if world.rank() == 0 {
