@@ -223,7 +223,11 @@ fn matrix_refuses(comm: &SimpleCommunicator) {
     let mut copy = matrix.duplicate().unwrap();
     assert!(copy.set_values_coo(&values).is_err());
     assert!(matrix.row(3 * comm.size()).is_err());
-    assert!(Matrix::from_coo(comm, 1, &[0], &[]).is_err());
+    let cols = if comm.rank() == 0 { &[][..] } else { &[0] };
+    assert!(Matrix::from_coo(comm, 1, &[0], cols).is_err()); // on all ranks
+    let beyond = comm.size();
+    assert!(Matrix::from_coo(comm, 1, &[comm.rank()], &[beyond]).is_err());
+    assert!(Matrix::from_coo(comm, 1, &[beyond], &[0]).is_err());
 }
 
 fn zero_rows_columns(comm: &SimpleCommunicator) {

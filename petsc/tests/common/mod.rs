@@ -1,5 +1,8 @@
 //! Runs the tests of one file on the main thread: MPI and PETSc start once per process, and belong
-//! to the thread that started them. Works under `cargo test` and under `mpirun`.
+//! to the thread that started them.
+//!
+//! `cargo test -p petsc` uses one rank. For two, let cargo start the tests by mpirun:
+//! `CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER="mpirun -n 2" cargo test -p petsc --tests`.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
