@@ -4,6 +4,32 @@
 //! time-step solvers whose failures are [`Error`]s in Rust. Never: `unsafe` for the user, printing,
 //! or an opinion about mechanics.
 //!
+//! ```no_run
+//! use mpi::traits::Communicator;
+//! use petsc::{Matrix, Session, Snes, Vector};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let (universe, _) = mpi::initialize_with_threading(mpi::Threading::Funneled).ok_or("no MPI")?;
+//! let world = universe.world();
+//! let _session = Session::new(&std::env::args().collect::<Vec<_>>())?;
+//!
+//! let mut x = Vector::new(&world, 1)?;
+//! x.set_all(1.0)?;
+//! let own = [world.rank()];
+//! let mut snes = Snes::new(&world)?;
+//! snes.set_function(&x, |x, f| {
+//!     f.write()?[0] = x.read()?[0].powi(2) - 2.0;
+//!     Ok(())
+//! })?;
+//! snes.set_jacobian(Matrix::from_coo(&world, 1, &own, &own)?, |x, matrix| {
+//!     Ok(matrix.set_values_coo(&[2.0 * x.read()?[0]])?)
+//! })?;
+//! snes.set_from_options()?;
+//! println!("{}: {}", snes.solve(&mut x)?, x.norm_max()?);
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # Owned and borrowed objects
 //! [`Vector`], [`Matrix`], [`Ksp`], [`Snes`] and [`Ts`] own a PETSc object and dereference to
 //! [`VectorRef`], [`MatrixRef`], [`KspRef`], [`SnesRef`] and [`TsRef`], which is also what callbacks
