@@ -33,7 +33,7 @@ fn without_options_it_is_the_frictionless_benchmark() {
             case.discretisation.ny,
             case.discretisation.quadrature
         ),
-        (170, 5, 2)
+        (170, 5, ssnp155::element::Quadrature::Reduced)
     );
     assert_eq!(
         (
@@ -79,7 +79,10 @@ fn the_punch_goes_down_and_a_share_of_the_way_back() {
             "t = {time}"
         );
     }
-    assert_eq!(loading.motion().depth(2000.0), loading.motion().depth(1000.0));
+    assert_eq!(
+        loading.motion().depth(2000.0),
+        loading.motion().depth(1000.0)
+    );
     let loading = read(&[("unload_fraction", "0")]).unwrap().loading;
     assert_eq!(loading.motion().end(), 900.0);
 }

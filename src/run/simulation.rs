@@ -3,12 +3,15 @@
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
-use petsc::{CallbackError, ConvergenceCheck, SnesReason, SnesRef, Ts, TsReason, TsRef, Vector, VectorRef};
+use petsc::{
+    CallbackError, ConvergenceCheck, SnesReason, SnesRef, Ts, TsReason, TsRef, Vector, VectorRef,
+};
 
 use super::ledger::{LEAST_FORCE, Ledger, StepEffort};
 use super::newton::Damping;
 use super::recorder::Recorder;
 use super::refusal::Refusal;
+use super::springback::{Springback, springback};
 use super::step_size::StepControl;
 use super::{RunError, defaults};
 use crate::case::{Case, Dynamics, check_unused};
@@ -43,6 +46,7 @@ pub(super) struct Simulation {
     /// Solves of the present step so far.
     refusals: RefCell<Vec<Refusal>>,
     counts: Cell<Counts>,
+    springbacks: RefCell<Vec<Springback>>,
 }
 
 /// Work done over the run.
@@ -63,6 +67,7 @@ pub(super) struct Finish {
     /// Why the solves of the last step were refused, if it never was accepted.
     pub refusals: Vec<Refusal>,
     pub time: f64,
+    pub springbacks: Vec<Springback>,
     /// PETSc's direct solver in use.
     pub factor_solver: Option<String>,
 }
@@ -96,6 +101,7 @@ impl Simulation {
             motion: case.loading.motion(),
             refusals: RefCell::default(),
             counts: Cell::default(),
+            springbacks: RefCell::default(),
             system,
         })
     }
@@ -125,6 +131,7 @@ impl Simulation {
             counts: self.counts.get(),
             refusals: self.refusals.take(),
             time: self.accepted_time.get(),
+            springbacks: self.springbacks.take(),
             factor_solver,
         }))
     }
@@ -202,9 +209,7 @@ impl Simulation {
         snes: &SnesRef,
         check: &ConvergenceCheck,
     ) -> Result<SnesReason, CallbackError> {
-        if check.default != SnesReason::ConvergedAbsolute
-            || check.residual_norm <= BALANCE_FLOOR
-        {
+        if check.default != SnesReason::ConvergedAbsolute || check.residual_norm <= BALANCE_FLOOR {
             return Ok(check.default);
         }
         let imbalance = self.system.vertical_sum(snes.function()?)?;
@@ -288,6 +293,10 @@ impl Simulation {
         if self.recorder.borrow().fields_due(label.is_some()) {
             self.write_fields(t, ts.solution()?, label)?;
         }
+        if label.is_some() {
+            let found = springback(&self.system, t, ts.solution()?)?;
+            self.springbacks.borrow_mut().extend(found);
+        }
         if ended {
             ts.set_converged_reason(TsReason::ConvergedTime)?;
         } else {
@@ -365,7 +374,7 @@ fn refuse_unknown_options() -> Result<(), RunError> {
 }
 
 /// The tangent is asked for where the residual was evaluated before: it cannot fail alone.
-fn not_evaluated(failure: petsc::Failure) -> CallbackError {
+pub(super) fn not_evaluated(failure: petsc::Failure) -> CallbackError {
     match failure {
         petsc::Failure::Fatal(error) => error,
         petsc::Failure::Domain => "the tangent cannot be evaluated where the residual was".into(),

@@ -54,7 +54,11 @@ impl LocalSystem {
         Ok(())
     }
 
-    fn add_internal_forces(&self, u: &[f64], out: &mut [f64]) -> Result<(), ElementFailure> {
+    pub(super) fn add_internal_forces(
+        &self,
+        u: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), ElementFailure> {
         let scale = 1.0 / self.problem.young_modulus;
         let mut local = ElementForce::ZERO;
         for element in 0..self.elements.len() {

@@ -9,6 +9,7 @@ mod measure;
 mod numbering;
 mod pattern;
 mod problem;
+mod release;
 mod sample;
 mod seed;
 
