@@ -12,7 +12,9 @@ mod drum;
 mod flat;
 mod flow;
 mod hertz;
+mod impact;
 mod material;
+mod motion;
 mod patch;
 mod row;
 mod shear;
@@ -49,6 +51,7 @@ const CASES: &[Case] = &[
     vibration::BAR,
     vibration::DAMPING,
     vibration::BEAM,
+    impact::WALL,
 ];
 
 /// Options of PETSc for all solves; `snes_atol` is chosen case by case.

@@ -182,7 +182,7 @@ impl Statics {
     ) -> Result<Self> {
         petsc::options::set("snes_atol", &tolerance.to_string())?;
         let system = Rc::new(System::new(problem, world.duplicate())?);
-        let start = start(&system, touching)?;
+        let start = start_unknowns(&system, touching)?;
         Ok(Self {
             path: StaticPath::new(Rc::clone(&system), start)?,
             system,
@@ -252,7 +252,7 @@ impl Statics {
 }
 
 /// Rest, with the gaps there are.
-fn start(system: &System, touching: Touching) -> Result<Vector> {
+pub fn start_unknowns(system: &System, touching: Touching) -> Result<Vector> {
     /// A multiplier that says that a point carries, mm.
     const CARRIES: f64 = 1e-9;
     let mut unknowns = system.vector()?;
