@@ -192,6 +192,8 @@ pub struct Output {
     pub dir: String,
     /// Fields are saved every so many accepted steps; 0: at the ends of loading and unloading only.
     pub every: usize,
+    /// Whether every Newton iteration is shown.
+    pub iterations: bool,
 }
 
 impl Case {
@@ -243,6 +245,7 @@ impl Case {
             output: Output {
                 dir: table::OUTPUT_DIR.read(options)?,
                 every: table::OUTPUT_EVERY.read(options)?,
+                iterations: table::MONITOR_ITERATIONS.read(options)?,
             },
         };
         geometry::check(&case)?;

@@ -175,6 +175,11 @@ option_table! {
         meaning: "A solve that needs more iterations is refused and done again with a shorter step.",
         value: |case| case.stepping.newton_max_iterations,
     }
+    MONITOR_ITERATIONS: Flag {
+        name: "monitor_iterations", unit: "", default: "false", group: Group::Output, kind: Flag,
+        meaning: "Shows every Newton iteration: residual norm, points in contact and how many of them changed.",
+        value: |case| case.output.iterations,
+    }
     OUTPUT_DIR: Path {
         name: "output_dir", unit: "", default: "results", group: Group::Output, kind: Path,
         meaning: "Directory for everything the run writes; made if it is missing.",

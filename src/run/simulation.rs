@@ -4,11 +4,12 @@ use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
 use petsc::{
-    CallbackError, ConvergenceCheck, SnesReason, SnesRef, Ts, TsReason, TsRef, Vector, VectorRef,
+    CallbackError, ConvergenceCheck, LineSearchInfo, SnesReason, SnesRef, Ts, TsReason, TsRef,
+    Vector, VectorRef,
 };
 
 use super::ledger::{LEAST_FORCE, Ledger, StepEffort};
-use super::newton::Damping;
+use super::newton::{Damping, limited_length};
 use super::recorder::Recorder;
 use super::refusal::Refusal;
 use super::springback::{Springback, springback};
@@ -39,8 +40,15 @@ pub(super) struct Simulation {
     accepted: RefCell<Vector>,
     accepted_time: Cell<f64>,
     extrapolate: bool,
+    show_iterations: bool,
+    /// Contact status of this rank's points at the last iteration shown.
+    status: RefCell<Vec<u8>>,
     /// Length of the step being tried, ms.
     attempted: Cell<f64>,
+    /// Time it is to reach, ms.
+    attempted_time: Cell<f64>,
+    /// Largest displacement expected of it, mm.
+    expected: Cell<f64>,
     least_step: f64,
     motion: PunchMotion,
     /// Solves of the present step so far.
@@ -96,7 +104,11 @@ impl Simulation {
             accepted: RefCell::new(accepted),
             accepted_time: Cell::new(0.0),
             extrapolate: stepping.extrapolate,
+            show_iterations: case.output.iterations,
+            status: RefCell::default(),
             attempted: Cell::new(0.0),
+            attempted_time: Cell::new(0.0),
+            expected: Cell::new(0.0),
             least_step: stepping.dt_min,
             motion: case.loading.motion(),
             refusals: RefCell::default(),
@@ -181,7 +193,7 @@ impl Simulation {
 
     fn set_hooks(self: &Rc<Self>, ts: &mut Ts) -> Result<(), RunError> {
         let this = Rc::clone(self);
-        ts.set_pre_stage(move |ts, _| this.before_solve(ts))?;
+        ts.set_pre_stage(move |ts, t| this.before_solve(ts, t))?;
         let this = Rc::clone(self);
         ts.set_post_stage(move |ts, t, _| this.after_solve(ts, t))?;
         let this = Rc::clone(self);
@@ -189,16 +201,16 @@ impl Simulation {
         let snes = ts.snes_mut()?;
         let this = Rc::clone(self);
         snes.set_convergence_test(move |snes, check| this.balanced(snes, check))?;
+        if self.show_iterations {
+            let this = Rc::clone(self);
+            snes.set_monitor(move |snes, iteration, norm| {
+                this.show_iteration(snes, iteration, norm)
+            })?;
+        }
         let this = Rc::clone(self);
         snes.set_initial_guess(move |guess| this.extrapolate(guess))?;
         let this = Rc::clone(self);
-        snes.set_shell_line_search(move |info| {
-            let iteration = info.iteration.unsigned_abs() as usize;
-            Ok(this
-                .damping
-                .borrow_mut()
-                .step_length(iteration, info.residual_norm))
-        })?;
+        snes.set_shell_line_search(move |info| this.step_length(info))?;
         Ok(())
     }
 
@@ -221,9 +233,37 @@ impl Simulation {
         })
     }
 
-    fn before_solve(&self, ts: &mut TsRef) -> Result<(), CallbackError> {
-        self.attempted.set(ts.time_step()?);
+    fn before_solve(&self, ts: &mut TsRef, t: f64) -> Result<(), CallbackError> {
+        self.attempted_time.set(t);
+        let dt = ts.time_step()?;
+        self.attempted.set(dt);
+        self.expected.set(self.expected_displacement(t, dt)?);
         Ok(())
+    }
+
+    /// Length of a Newton step: damped where the solve stagnates, and limited where it would carry the
+    /// sheet much farther than the step in time does.
+    fn step_length(&self, info: &LineSearchInfo<'_>) -> Result<f64, CallbackError> {
+        let iteration = info.iteration.unsigned_abs() as usize;
+        let damped = self
+            .damping
+            .borrow_mut()
+            .step_length(iteration, info.residual_norm);
+        let correction = self.system.largest_displacement(info.step)?;
+        Ok(damped.min(limited_length(iteration, correction, self.expected.get())))
+    }
+
+    /// The largest displacement that a step of length `dt` (ms) is expected to bring, mm: that of the
+    /// punch, or of the sheet if it moved faster in the last step.
+    fn expected_displacement(&self, t: f64, dt: f64) -> Result<f64, CallbackError> {
+        let punch = (self.motion.depth(t) - self.motion.depth(t - dt)).abs();
+        let before = self.before.borrow();
+        let Some((before, last_dt)) = before.as_ref() else {
+            return Ok(punch);
+        };
+        let mut motion = self.accepted.borrow().to_owned()?;
+        motion.axpy(-1.0, before)?;
+        Ok(punch.max(self.system.largest_displacement(&motion)? * dt / last_dt))
     }
 
     /// Moves the start of a solve on along the last step: displacements only, with multipliers, gaps
@@ -243,6 +283,38 @@ impl Simulation {
         for i in 0..self.system.owned_displacements() {
             guess[i] = now[i] + ratio * (now[i] - before[i]);
         }
+        Ok(())
+    }
+
+    fn show_iteration(
+        &self,
+        snes: &SnesRef,
+        iteration: i32,
+        norm: f64,
+    ) -> Result<(), CallbackError> {
+        let now = self
+            .system
+            .contact_status(self.attempted_time.get(), snes.solution()?)?;
+        let mut before = self.status.borrow_mut();
+        let changed = if before.len() == now.len() {
+            now.iter()
+                .zip(before.iter())
+                .filter(|(a, b)| a != b)
+                .count()
+        } else {
+            0
+        };
+        let counts = self.system.count_over_ranks([
+            now.iter().filter(|&&s| s > 0).count(),
+            now.iter().filter(|&&s| s > 1).count(),
+            changed,
+        ]);
+        let [active, slipping, changed] = counts;
+        *before = now;
+        self.recorder.borrow_mut().show(&format!(
+            "    {iteration:>3}  residual {norm:.3e} mm  {active} points in contact, \
+             {slipping} slip, {changed} changed\n"
+        ));
         Ok(())
     }
 

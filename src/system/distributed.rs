@@ -252,6 +252,21 @@ impl System {
         Ok(problem.whole_sheet * problem.young_modulus * sum)
     }
 
+    /// Largest displacement among the unknowns `u`, mm. Collective.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn largest_displacement(&self, u: &VectorRef) -> petsc::Result<f64> {
+        let count = self.owned_displacements();
+        let mine = u.read()?[..count]
+            .iter()
+            .fold(0.0_f64, |largest, x| largest.max(x.abs()));
+        let mut largest = 0.0;
+        self.comm
+            .all_reduce_into(&mine, &mut largest, SystemOperation::max());
+        Ok(largest)
+    }
+
     fn note(&self, evaluated: Result<(), ElementFailure>) -> Evaluation {
         evaluated.map_err(|failure| {
             self.failure.replace(Some(failure));
@@ -308,6 +323,25 @@ impl System {
         self.comm
             .all_reduce_into(&mine.maxima[..], &mut all.maxima[..], max);
         Ok(Measures::from_reduced(&all, local.problem().whole_sheet))
+    }
+
+    /// Status of this rank's contact points at an iterate: 0 open, 1 in contact, 2 slipping forwards,
+    /// 3 backwards.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn contact_status(&self, t: f64, u: &VectorRef) -> petsc::Result<Vec<u8>> {
+        let values = self.local_values(u)?;
+        Ok(self.local().contact_status(t, &values))
+    }
+
+    /// Sums of counts over the ranks. Collective.
+    pub fn count_over_ranks<const N: usize>(&self, mine: [usize; N]) -> [usize; N] {
+        let mine = mine.map(|count| count as u64);
+        let mut all = [0_u64; N];
+        self.comm
+            .all_reduce_into(&mine[..], &mut all[..], SystemOperation::sum());
+        all.map(|count| count as usize)
     }
 
     /// The local values of `u`: x and y of each local node, multiplier and gap of each local contact
