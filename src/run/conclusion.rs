@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use mpi::traits::Communicator;
 use petsc::Session;
 
-use super::{Failure, Outcome, RunError};
+use super::{Failure, Outcome, RunError, unread};
 use crate::case::{self, Case, Instant, ReferenceValue, reference_values};
 use crate::output::monitor::{failed_banner, finished_banner};
 use crate::output::summary::{Certificates, Counts, Provenance, Status, Summary, Timing};
@@ -33,7 +33,7 @@ pub fn conclude(
         summary.write(outcome.recorder.folder().summary())?;
         outcome.recorder.force_figure()?;
     }
-    let mut text = format!("\n{}\n", verdicts.text());
+    let mut text = format!("\n{}\n{}", verdicts.text(), unread::warnings()?);
     match &outcome.failure {
         None => text.push_str(&finished(&outcome, &verdicts)),
         Some(failure) => text.push_str(&failed(failure, &outcome)),

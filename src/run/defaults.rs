@@ -1,7 +1,11 @@
 //! PETSc options this program chooses; whatever the user gives goes before them.
 
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+use petsc::Ts;
 use petsc::options::set_default;
 
+use super::RunError;
 use crate::case::Case;
 
 /// By how much a step shrinks when its solve is refused.
@@ -27,6 +31,19 @@ const DEFAULTS: &[(&str, &str)] = &[
     ("ts_max_steps", "1000000"),
     ("ts_exact_final_time", "stepover"),
 ];
+
+/// Lets PETSc's time stepper and the solvers below it print their help. Collective.
+pub(super) fn show_help(case: &Case, comm: &SimpleCommunicator) -> Result<(), RunError> {
+    set(case)?;
+    Ok(Ts::new(&comm.duplicate())?.set_from_options()?)
+}
+
+/// Whether the option has the value that this program gave it.
+pub(super) fn is_default(name: &str, value: Option<&str>) -> bool {
+    DEFAULTS
+        .iter()
+        .any(|(ours, default)| *ours == name && value == Some(*default))
+}
 
 /// Puts the defaults into PETSc's option database.
 pub(super) fn set(case: &Case) -> petsc::Result<()> {

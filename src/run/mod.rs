@@ -10,6 +10,7 @@ mod recorder;
 mod refusal;
 mod simulation;
 mod step_size;
+mod unread;
 
 use std::rc::Rc;
 use std::time::Instant;
@@ -99,6 +100,11 @@ impl Failure {
 /// If the run cannot be set up, or PETSc or a file fails on the way.
 pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome>, RunError> {
     let clock = Instant::now();
+    // Before any file is made: neither a slip of the pen nor a question may cost an earlier run's results.
+    if petsc::options::has("help")? {
+        return defaults::show_help(case, comm).map(|()| None);
+    }
+    unread::refuse_slips()?;
     let problem = Problem::new(case);
     let motion = problem.motion;
     let landmarks = landmarks(case)?;
@@ -106,9 +112,7 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     let unknowns = system.unknown_count();
     let recorder = Recorder::new(case, &system)?;
     let simulation = Rc::new(Simulation::new(case, system, recorder, landmarks)?);
-    let Some(finish) = simulation.run(case)? else {
-        return Ok(None);
-    };
+    let finish = simulation.run(case)?;
     let failure = finish.reason.is_diverged().then(|| Failure {
         time: finish.time,
         depth: motion.depth(finish.time),
@@ -131,17 +135,21 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     }))
 }
 
-/// Times to hit exactly: both ends, and where reference values are compared.
+/// Times to hit exactly: both ends, where reference values are compared, and where the user wants a row.
 fn landmarks(case: &Case) -> Result<Vec<f64>, CaseError> {
     let motion = case.loading.motion();
-    let mut times = vec![motion.time_load, motion.end()];
+    let mut depths = case.stepping.report_strokes.clone();
     for value in reference_values()? {
-        if let case::Instant::Travel(depth) = value.when
-            && depth < motion.stroke
-        {
-            times.push(motion.time_at_depth(depth));
+        if let case::Instant::Travel(depth) = value.when {
+            depths.push(depth);
         }
     }
+    depths.retain(|&depth| depth < motion.stroke);
+    let mut times: Vec<f64> = depths
+        .iter()
+        .map(|&depth| motion.time_at_depth(depth))
+        .collect();
+    times.extend([motion.time_load, motion.end()]);
     times.sort_by(f64::total_cmp);
     times.dedup();
     Ok(times)

@@ -11,7 +11,7 @@ use super::recorder::Recorder;
 use super::refusal::Refusal;
 use super::step_size::StepControl;
 use super::{RunError, defaults};
-use crate::case::{Case, Dynamics, check_unused};
+use crate::case::{Case, Dynamics};
 use crate::output::StepRecord;
 use crate::system::{FieldSampler, System};
 
@@ -95,7 +95,7 @@ impl Simulation {
     }
 
     /// Runs to the end of the motion or until a step cannot be solved. Collective.
-    pub(super) fn run(self: &Rc<Self>, case: &Case) -> Result<Option<Finish>, RunError> {
+    pub(super) fn run(self: &Rc<Self>, case: &Case) -> Result<Finish, RunError> {
         defaults::set(case)?;
         let mut ts = Ts::new(self.system.comm())?;
         self.set_problem(&mut ts, case.loading.dynamics)?;
@@ -106,21 +106,17 @@ impl Simulation {
         ts.snes_mut()?.set_variable_bounds(&lower, &upper)?;
         ts.set_time_step(self.control.borrow().planned())?;
         ts.set_max_time(self.control.borrow().end())?;
-        if petsc::options::has("help")? {
-            return Ok(None);
-        }
-        refuse_unknown_options()?;
         self.write_fields(0.0, &self.accepted.borrow(), None)?;
         self.recorder.borrow_mut().begin();
         let reason = ts.solve()?;
         let factor_solver = ts.snes()?.ksp()?.factor_solver()?;
-        Ok(Some(Finish {
+        Ok(Finish {
             reason,
             counts: self.counts.get(),
             refusals: self.refusals.take(),
             time: self.accepted_time.get(),
             factor_solver,
-        }))
+        })
     }
 
     /// Gives the recorder back when the time stepper is gone.
@@ -325,16 +321,6 @@ impl Simulation {
         }
         Ok(())
     }
-}
-
-/// Everything that reads options has read them: what is left over is a slip of the pen, unless
-/// PETSc reads it later.
-fn refuse_unknown_options() -> Result<(), RunError> {
-    let (errors, _) = check_unused(&petsc::options::unused()?);
-    errors
-        .into_iter()
-        .next()
-        .map_or(Ok(()), |error| Err(error.into()))
 }
 
 /// The tangent is asked for where the residual was evaluated before: it cannot fail alone.
