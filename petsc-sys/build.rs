@@ -49,7 +49,7 @@ const FUNCTIONS: &[&str] = &[
     "TS(MonitorSet|GetSNES|GetAdapt|GetTime|SetTime|GetTimeStep|SetTimeStep|GetMaxTime|SetMaxTime)",
     "TS(GetMaxSteps|SetMaxSteps|GetStepNumber|SetStepNumber|GetSNESFailures|GetStepRejections)",
     "TS(GetSNESIterations|GetKSPIterations|SetMaxSNESFailures|SetMaxStepRejections|RestartStep)",
-    "TS(SetErrorIfStepFails|SetExactFinalTime|GetConvergedReason|SetConvergedReason|GetPrevTime)",
+    "TS(SetErrorIfStepFails|SetExactFinalTime|GetExactFinalTime|GetConvergedReason|SetConvergedReason|GetPrevTime)",
     "TS(GetSolution|2GetSolution|2SetSolution|Alpha2SetRadius|Alpha2SetParams|Alpha2GetParams)",
     "TSAdapt(SetType|GetType|SetScaleSolveFailed|GetScaleSolveFailed|SetStepLimits|GetStepLimits)",
 ];

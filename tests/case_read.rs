@@ -33,7 +33,7 @@ fn without_options_it_is_the_frictionless_benchmark() {
             case.discretisation.ny,
             case.discretisation.quadrature
         ),
-        (170, 5, 2)
+        (170, 5, ssnp155::element::Quadrature::Reduced)
     );
     assert_eq!(
         (
@@ -55,7 +55,7 @@ fn without_options_it_is_the_frictionless_benchmark() {
         (
             case.sheet.force_factor(),
             case.tools.die_edge(),
-            case.loading.end_time()
+            case.loading.motion().end()
         ),
         (60.0, 29.0, 1000.0)
     );
@@ -75,13 +75,16 @@ fn the_punch_goes_down_and_a_share_of_the_way_back() {
         (1000.0, 25.65),
     ] {
         assert!(
-            (loading.punch_travel(time) - travel).abs() < 1e-12,
+            (loading.motion().depth(time) - travel).abs() < 1e-12,
             "t = {time}"
         );
     }
-    assert_eq!(loading.punch_travel(2000.0), loading.punch_travel(1000.0));
+    assert_eq!(
+        loading.motion().depth(2000.0),
+        loading.motion().depth(1000.0)
+    );
     let loading = read(&[("unload_fraction", "0")]).unwrap().loading;
-    assert_eq!(loading.end_time(), 900.0);
+    assert_eq!(loading.motion().end(), 900.0);
 }
 
 #[test]

@@ -11,7 +11,10 @@ use std::{
 use mpi_sys::MPI_Comm;
 use petsc_sys as sys;
 
-use crate::error::{Cause, Error, Evaluation, Failure, Result, check, fail};
+use crate::{
+    agree::largest,
+    error::{Cause, Error, Evaluation, Failure, Result, check, fail},
+};
 
 /// A place for one closure. It is called through a copy of the `Rc`, so a closure may be replaced
 /// while it runs.
@@ -138,7 +141,7 @@ pub(crate) fn evaluate(
         Err(_) => 2,
     };
     let worst = comm_of(object)
-        .and_then(|comm| worst_of(comm, status))
+        .and_then(|comm| largest(comm, status))
         .map_err(|error| fail(Cause::Callback(Box::new(error))))?;
     match (mine, worst) {
         (Err(cause), _) => Err(fail(cause)),
@@ -156,31 +159,5 @@ pub(crate) fn run(
     match evaluate(object, || body().map_err(Failure::Fatal)) {
         Ok(_) => 0,
         Err(code) => code,
-    }
-}
-
-/// The largest status of all ranks.
-pub(crate) fn worst_of(comm: MPI_Comm, status: i32) -> Result<i32> {
-    let mut size: c_int = 1;
-    let mut worst = status;
-    // SAFETY: a valid communicator; one integer is sent and one received.
-    let code = unsafe {
-        mpi_sys::MPI_Comm_size(comm, &mut size);
-        if size == 1 {
-            return Ok(status);
-        }
-        mpi_sys::MPI_Allreduce(
-            ptr::from_ref(&status).cast(),
-            ptr::from_mut(&mut worst).cast(),
-            1,
-            mpi_sys::RSMPI_INT32_T,
-            mpi_sys::RSMPI_MAX,
-            comm,
-        )
-    };
-    if code == 0 {
-        Ok(worst)
-    } else {
-        Err(Error::usage(format!("MPI_Allreduce failed: {code}")))
     }
 }

@@ -17,7 +17,7 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 pub type CallbackError = Box<dyn std::error::Error + Send + Sync>;
 
 /// What a closure that evaluates something returns.
-pub type Evaluation = std::result::Result<(), Failure>;
+pub type Evaluation<T = ()> = std::result::Result<T, Failure>;
 
 /// Why PETSc, or a closure called by it, failed.
 #[derive(Debug)]

@@ -106,4 +106,34 @@ macro_rules! petsc_object {
     };
 }
 
-pub(crate) use petsc_object;
+/// Defines functions that get one plain value from PETSc.
+macro_rules! plain_getters {
+    ($($(#[$doc:meta])* $get:ident, $getter:ident => $type:ty;)*) => {
+        $($(#[$doc])*
+        ///
+        /// # Errors
+        /// If PETSc fails.
+        pub fn $get(&self) -> $crate::Result<$type> {
+            let mut value = <$type>::default();
+            // SAFETY: a live object, one value to write.
+            $crate::error::check(unsafe { petsc_sys::$getter(self.raw(), &mut value) })?;
+            Ok(value)
+        })*
+    };
+}
+
+/// Defines functions that give one plain value to PETSc.
+macro_rules! plain_setters {
+    ($($(#[$doc:meta])* $set:ident, $setter:ident <= $type:ty;)*) => {
+        $($(#[$doc])*
+        ///
+        /// # Errors
+        /// If the value is impossible.
+        pub fn $set(&mut self, value: $type) -> $crate::Result<()> {
+            // SAFETY: a live object.
+            $crate::error::check(unsafe { petsc_sys::$setter(self.raw(), value) })
+        })*
+    };
+}
+
+pub(crate) use {petsc_object, plain_getters, plain_setters};

@@ -24,9 +24,11 @@
 #![deny(unsafe_op_in_unsafe_fn, clippy::undocumented_unsafe_blocks)]
 #![deny(clippy::unwrap_used, clippy::expect_used)]
 
+mod agree;
 mod callback;
 mod error;
 mod factorization;
+mod guard;
 mod handle;
 mod ksp;
 mod matrix;
@@ -43,6 +45,7 @@ pub mod options;
 
 pub use error::{CallbackError, Error, Evaluation, Failure, Result};
 pub use factorization::{FactorStatus, Factorization};
+pub use guard::{ReadGuard, WriteGuard};
 pub use ksp::{Ksp, KspRef};
 pub use matrix::{Matrix, MatrixOption, MatrixRef};
 pub use reason::{KspReason, SnesReason, TsReason};
@@ -50,7 +53,7 @@ pub use scatter::Scatter;
 pub use session::{Session, memory_bytes};
 pub use snes::{ConvergenceCheck, LineSearchInfo, Snes, SnesRef, Tolerances};
 pub use ts::{AlphaParameters, ExactFinalTime, Ts, TsRef};
-pub use vector::{ReadGuard, Vector, VectorRef, WriteGuard};
+pub use vector::{Vector, VectorRef};
 
 /// The value that stands for "no bound" in bounds of variables (PETSc's `PETSC_INFINITY`).
 pub const INFINITY: f64 = f64::MAX / 4.0;

@@ -6,6 +6,7 @@ use mpi::topology::Communicator;
 use petsc_sys as sys;
 
 use crate::{
+    agree::{largest, sum},
     callback::table,
     error::{Error, Result, check},
     handle::petsc_object,
@@ -54,17 +55,22 @@ impl Matrix {
         rows: &[i32],
         cols: &[i32],
     ) -> Result<Self> {
-        if rows.len() != cols.len() {
-            return Err(Error::usage("as many row as column indices are needed"));
-        }
         let keep = keep()?;
+        let n = index(local_rows)?;
+        // PETSc checks neither the columns nor that all ranks succeed.
+        let size = sum(comm.as_raw(), n)?;
+        let fits = rows.len() == cols.len() && rows.iter().chain(cols).all(|&i| i < size);
+        if largest(comm.as_raw(), i32::from(!fits))? > 0 {
+            return Err(Error::usage(format!(
+                "as many row as column indices are needed, all below {size}, on every rank"
+            )));
+        }
         let mut raw = ptr::null_mut();
         // SAFETY: a valid communicator; PETSc writes the new object, which is owned at once.
         let matrix = unsafe {
             check(sys::MatCreate(comm.as_raw(), &mut raw))?;
             Self::own(raw, keep)?
         };
-        let n = index(local_rows)?;
         // PETSc may reorder the indices in place.
         let (mut rows, mut cols) = (rows.to_vec(), cols.to_vec());
         let count =

@@ -1,15 +1,13 @@
 //! Distributed vectors.
 
-use std::{
-    ops::{Deref, DerefMut, Range},
-    ptr, slice,
-};
+use std::{ops::Range, ptr};
 
 use mpi::topology::Communicator;
 use petsc_sys as sys;
 
 use crate::{
     error::{Error, Result, check},
+    guard::{ReadGuard, WriteGuard},
     handle::petsc_object,
     session::keep,
 };
@@ -114,15 +112,7 @@ impl VectorRef {
     /// # Errors
     /// If PETSc fails.
     pub fn read(&self) -> Result<ReadGuard<'_>> {
-        let len = self.local_size()?;
-        let mut data = ptr::null();
-        // SAFETY: a live vector, one pointer to write; the guard gives the array back.
-        check(unsafe { sys::VecGetArrayRead(self.raw(), &mut data) })?;
-        Ok(ReadGuard {
-            vector: self,
-            data,
-            len,
-        })
+        ReadGuard::new(self)
     }
 
     /// This rank's entries, to read and write.
@@ -130,15 +120,7 @@ impl VectorRef {
     /// # Errors
     /// If PETSc fails.
     pub fn write(&mut self) -> Result<WriteGuard<'_>> {
-        let len = self.local_size()?;
-        let mut data = ptr::null_mut();
-        // SAFETY: a live vector, one pointer to write; the guard gives the array back.
-        check(unsafe { sys::VecGetArray(self.raw(), &mut data) })?;
-        Ok(WriteGuard {
-            vector: self,
-            data,
-            len,
-        })
+        WriteGuard::new(self)
     }
 
     /// Sets every entry to `value`.
@@ -229,70 +211,6 @@ impl VectorRef {
         // SAFETY: a live vector, one number to write.
         check(unsafe { sys::VecSum(self.raw(), &mut value) })?;
         Ok(value)
-    }
-}
-
-/// This rank's entries of a vector, to read.
-#[must_use]
-pub struct ReadGuard<'a> {
-    vector: &'a VectorRef,
-    data: *const f64,
-    len: usize,
-}
-
-impl Deref for ReadGuard<'_> {
-    type Target = [f64];
-    fn deref(&self) -> &[f64] {
-        if self.len == 0 {
-            return &[]; // PETSc's pointer may be null
-        }
-        // SAFETY: PETSc's array of `len` numbers, valid until it is given back; the vector is
-        // borrowed, so nobody writes to it meanwhile.
-        unsafe { slice::from_raw_parts(self.data, self.len) }
-    }
-}
-
-impl Drop for ReadGuard<'_> {
-    fn drop(&mut self) {
-        // SAFETY: gives back what VecGetArrayRead lent.
-        unsafe { sys::VecRestoreArrayRead(self.vector.raw(), &mut self.data) };
-    }
-}
-
-/// This rank's entries of a vector, to read and write.
-#[must_use]
-pub struct WriteGuard<'a> {
-    vector: &'a mut VectorRef,
-    data: *mut f64,
-    len: usize,
-}
-
-impl Deref for WriteGuard<'_> {
-    type Target = [f64];
-    fn deref(&self) -> &[f64] {
-        if self.len == 0 {
-            return &[]; // PETSc's pointer may be null
-        }
-        // SAFETY: PETSc's array of `len` numbers, valid until it is given back; the vector is
-        // borrowed mutably by the guard.
-        unsafe { slice::from_raw_parts(self.data, self.len) }
-    }
-}
-
-impl DerefMut for WriteGuard<'_> {
-    fn deref_mut(&mut self) -> &mut [f64] {
-        if self.len == 0 {
-            return &mut []; // PETSc's pointer may be null
-        }
-        // SAFETY: as in `deref`, and the guard is borrowed mutably.
-        unsafe { slice::from_raw_parts_mut(self.data, self.len) }
-    }
-}
-
-impl Drop for WriteGuard<'_> {
-    fn drop(&mut self) {
-        // SAFETY: gives back what VecGetArray lent; PETSc notes that the values have changed.
-        unsafe { sys::VecRestoreArray(self.vector.raw(), &mut self.data) };
     }
 }
 

@@ -37,6 +37,9 @@ fn main() {
             "one_symbolic_factorisation_serves_all_active_sets",
             one_symbolic_factorisation,
         ),
+        ("without_bounds_the_string_hangs_free", free_string),
+        ("a_matrix_free_operator_follows_the_iterate", matrix_free),
+        ("hooks_cannot_pull_the_solver_to_pieces", parts_are_held),
         (
             "an_unusable_matrix_is_a_failure_of_the_linear_solver",
             unusable_matrix,
@@ -284,4 +287,51 @@ fn unusable_matrix(comm: &SimpleCommunicator) {
         string.snes.ksp_reason().unwrap(),
         petsc::KspReason::DivergedPreconditioner
     );
+}
+
+fn check_free(string: &Obstacle) {
+    assert!((string.u.norm_max().unwrap() - 0.125).abs() < 1e-7);
+    assert!(string.snes.active_set().unwrap().is_empty());
+    let all: Vec<i32> = string.u.ownership_range().unwrap().collect();
+    assert_eq!(string.snes.inactive_set().unwrap(), all);
+}
+
+fn free_string(comm: &SimpleCommunicator) {
+    let mut string = Obstacle::new(comm, "free_");
+    string.snes.set_from_options().unwrap();
+    assert!(string.snes.solve(&mut string.u).unwrap().is_converged());
+    check_free(&string);
+    assert_eq!(string.snes.iteration_number().unwrap(), 1);
+}
+
+fn matrix_free(comm: &SimpleCommunicator) {
+    options::set("mf_snes_mf_operator", "").unwrap();
+    let mut string = Obstacle::new(comm, "mf_");
+    string.snes.set_from_options().unwrap();
+    assert!(string.snes.solve(&mut string.u).unwrap().is_converged());
+    check_free(&string);
+}
+
+fn parts_are_held(comm: &SimpleCommunicator) {
+    let mut string = Obstacle::bounded(comm, "held_");
+    string.snes.set_from_options().unwrap();
+    let template = string.u.duplicate().unwrap();
+    let refused = Rc::new(Cell::new(0));
+    let count = Rc::clone(&refused);
+    string
+        .snes
+        .set_update(move |snes, _| {
+            assert!(snes.set_type("newtonls").is_err());
+            assert!(snes.set_from_options().is_err());
+            assert!(snes.set_function(&template, |_, _| Ok(())).is_err());
+            snes.set_monitor(|_, _, _| Ok(()))?; // hooks may change
+            snes.set_update(|_, _| Ok(()))?; // even the one that runs
+            count.set(count.get() + 1);
+            Ok(())
+        })
+        .unwrap();
+    assert!(string.snes.solve(&mut string.u).unwrap().is_converged());
+    string.check_solution();
+    assert_eq!(refused.get(), 1);
+    string.snes.set_type("newtonls").unwrap(); // and now it may
 }

@@ -17,7 +17,9 @@ fn main() {
             "a_restarted_step_keeps_second_order",
             restart_keeps_second_order,
         ),
-        ("without_the_cure_the_start_is_of_first_order", uncured),
+        ("a_jump_of_the_solution_is_a_start", jump),
+        ("a_start_that_failed_is_cured_again", failed_start),
+        ("interpolation_at_the_end_is_refused", interpolation),
         ("hooks_see_times_in_order", hooks),
     ]);
 }
@@ -81,17 +83,73 @@ fn restart_keeps_second_order(comm: &SimpleCommunicator) {
     assert!((order - 2.0).abs() < 0.1, "order {order}");
 }
 
-fn uncured(comm: &SimpleCommunicator) {
+fn jump(comm: &SimpleCommunicator) {
+    // Half-way, the state is set back to the start: what follows is the first half once more.
     let order = order(|steps| {
         let mut ts = oscillator(comm, 0.5, steps);
-        ts.set_pre_step(|ts| Ok(ts.alpha2_set_radius(0.5)?))
-            .unwrap();
-        error(&mut ts)
+        ts.set_post_step(move |ts| {
+            if ts.step_number()? == steps / 2 {
+                let (mut u, v) = (ts.solution()?.duplicate()?, ts.solution()?.duplicate()?);
+                u.set_all(1.0)?;
+                ts.set_solution2(&u, &v)?;
+            }
+            Ok(())
+        })
+        .unwrap();
+        assert_eq!(ts.solve().unwrap(), TsReason::ConvergedTime);
+        let (u, v) = ts.solution2().unwrap();
+        let (u, v) = (u.read().unwrap()[0], v.read().unwrap()[0]);
+        (u - 0.5f64.cos()).hypot(v + 0.5f64.sin())
     });
-    assert!(
-        (order - 1.0).abs() < 0.1,
-        "order {order}: is the cure still needed?"
-    );
+    assert!((order - 2.0).abs() < 0.1, "order {order}");
+}
+
+fn failed_start(comm: &SimpleCommunicator) {
+    let mut ts = oscillator(comm, 0.5, 4);
+    let own_params = ts.alpha2_get_params().unwrap();
+    ts.set_max_snes_failures(-1).unwrap();
+    ts.set_max_step_rejections(0).unwrap();
+    let starts: Rc<RefCell<Vec<bool>>> = Rc::default();
+    let seen = Rc::clone(&starts);
+    ts.set_post_stage(move |ts, _, _| {
+        seen.borrow_mut()
+            .push(ts.alpha2_get_params()? == petsc::AlphaParameters::START);
+        Ok(())
+    })
+    .unwrap();
+    ts.set_post_step(|ts| {
+        if ts.step_number()? == 2 {
+            Ok(ts.restart_step()?)
+        } else {
+            Ok(())
+        }
+    })
+    .unwrap();
+    ts.set_stage_check(|ts, time, _| {
+        let fails = time > 0.55 && ts.time_step()? > 0.11;
+        if fails {
+            Err(petsc::Failure::Domain)
+        } else {
+            Ok(())
+        }
+    })
+    .unwrap();
+    assert_eq!(ts.solve().unwrap(), TsReason::DivergedStepRejected);
+    assert_eq!(ts.step_number().unwrap(), 2);
+    assert_eq!(ts.alpha2_get_params().unwrap(), own_params);
+    // Start, step, and the first half step of the second start, which fails.
+    assert_eq!(starts.take(), [true, true, true, false, true]);
+    ts.set_time_step(0.1).unwrap();
+    assert_eq!(ts.solve().unwrap(), TsReason::ConvergedTime);
+    assert_eq!(starts.take()[..4], [true, true, true, false]);
+}
+
+fn interpolation(comm: &SimpleCommunicator) {
+    petsc::options::set("ts_exact_final_time", "interpolate").unwrap();
+    let mut ts = Ts::new(comm).unwrap();
+    ts.set_from_options().unwrap();
+    petsc::options::clear("ts_exact_final_time").unwrap();
+    assert!(ts.solve().unwrap_err().to_string().contains("stepover"));
 }
 
 fn hooks(comm: &SimpleCommunicator) {

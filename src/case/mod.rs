@@ -21,7 +21,8 @@ pub use error::{CaseError, Warning};
 pub use geometry::check_ranks;
 pub use help::{help_text, options_markdown};
 pub use model::{
-    Case, Discretisation, Dynamics, Loading, Material, OptionSource, Output, Sheet, Stepping, Tools,
+    Case, Discretisation, Dynamics, Friction, Loading, Material, OptionSource, Output, Sheet,
+    Stepping, Tools,
 };
 pub use provenance::Difference;
 pub use reference::{Instant, ReferenceValue, Tolerance, reference_values};

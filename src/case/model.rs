@@ -32,6 +32,8 @@ pub struct Case {
     pub loading: Loading,
     /// What the sheet is made of.
     pub material: Material,
+    /// Friction between sheet and tools.
+    pub friction: Friction,
     /// Mesh, quadrature and contact points.
     pub discretisation: Discretisation,
     /// Time steps and Newton's method.
@@ -157,6 +159,15 @@ impl Discretisation {
     }
 }
 
+/// Friction between sheet and tools.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Friction {
+    /// Coulomb's coefficient; 0 without friction.
+    pub coefficient: f64,
+    /// Elastic slip per friction traction, mm/MPa.
+    pub compliance: f64,
+}
+
 /// Time steps and Newton's method.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stepping {
@@ -211,6 +222,10 @@ impl Case {
                 dynamics: table::DYNAMICS.read(options)?,
             },
             material: read_material(options)?,
+            friction: Friction {
+                coefficient: table::FRICTION_COEFFICIENT.read(options)?,
+                compliance: table::FRICTION_COMPLIANCE.read(options)?,
+            },
             discretisation: Discretisation {
                 nx: table::SHEET_NX.read(options)?,
                 ny: table::SHEET_NY.read(options)?,

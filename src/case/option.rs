@@ -11,6 +11,7 @@ pub(crate) enum Group {
     Tools,
     Loading,
     Material,
+    Friction,
     Discretisation,
     Stepping,
     Output,
@@ -18,11 +19,12 @@ pub(crate) enum Group {
 
 impl Group {
     /// All groups in the order in which they are listed.
-    pub(crate) const ALL: [Group; 7] = [
+    pub(crate) const ALL: [Group; 8] = [
         Group::Sheet,
         Group::Tools,
         Group::Loading,
         Group::Material,
+        Group::Friction,
         Group::Discretisation,
         Group::Stepping,
         Group::Output,
@@ -35,6 +37,7 @@ impl Group {
             Group::Tools => "Tools",
             Group::Loading => "Loading",
             Group::Material => "Material",
+            Group::Friction => "Friction",
             Group::Discretisation => "Discretisation",
             Group::Stepping => "Stepping",
             Group::Output => "Output",

@@ -101,6 +101,18 @@ option_table! {
                   table, which is part of the program.",
         value: |case| case.material.hardening_file.clone(),
     }
+    FRICTION_COEFFICIENT: Real {
+        name: "friction_coefficient", unit: "", default: "0", group: Group::Friction,
+        kind: Real(Bound::Included(0.0), Bound::Included(10.0)),
+        meaning: "Coulomb's coefficient of friction between sheet and tools; 0.1342 in the benchmark with friction.",
+        value: |case| case.friction.coefficient,
+    }
+    FRICTION_COMPLIANCE: Real {
+        name: "friction_compliance", unit: "mm/MPa", default: "5e-4", group: Group::Friction,
+        kind: Real::positive(1.0),
+        meaning: "Elastic slip per friction traction: how far a sticking point moves along the tool.",
+        value: |case| case.friction.compliance,
+    }
     SHEET_NX: Integer {
         name: "sheet_nx", unit: "", default: "170", group: Group::Discretisation, kind: Integer(1, 10_000),
         meaning: "Elements along half the sheet.",

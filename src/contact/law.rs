@@ -13,6 +13,19 @@
 //! primal-dual active set method (Hintermüller, Ito, Kunisch 2003, SIAM J. Optim. 13, 865-888): an
 //! inactive point has λ = 0, an active one φ + ε λ = 0. λ has no bound: its negative trial value is
 //! what releases a point.
+//!
+//! Friction is Coulomb's with an elastic slip that is remembered from step to step: with s the arc
+//! length of the foot point along the tool, in the tool's frame, and the index n for the last
+//! accepted step,
+//!
+//! ```text
+//! traction   λ_t = clamp( λ_tn - (s - s_n) / ε_t , -μ λ, μ λ )        F_u -= λ_t ∇s N_a
+//! ```
+//!
+//! which is the return map of perfect plasticity (Simo and Laursen 1992, Comput. Struct. 42, 97-116).
+//! The memory matters: without it the sticking traction vanishes as a step is cut, and cutting does
+//! not lead back to the last accepted state. λ_t is a function of the other unknowns, so the cone
+//! holds exactly at every iterate.
 
 use crate::tool::{Distance, Profile};
 
@@ -22,6 +35,38 @@ use crate::tool::{Distance, Profile};
 /// real force and releases points that carry the load.
 const COMPLEMENTARITY_WEIGHT: f64 = 1e-4;
 
+/// Multipliers up to this size are rounding, not contact, mm.
+const NO_CONTACT: f64 = 1e-13;
+
+/// Coulomb friction with elastic slip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Friction {
+    /// Coefficient of friction μ.
+    pub coefficient: f64,
+    /// Elastic slip for a unit traction, ε_t, as `give` of [`ContactLaw`].
+    pub give: f64,
+}
+
+/// What a contact point remembers of the last accepted step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrictionState {
+    /// Friction force along the tool divided by Young's modulus, mm.
+    pub traction: f64,
+    /// Arc length of the foot point in the tool's frame, mm.
+    pub arc_length: f64,
+}
+
+/// Friction of a point and its slopes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Traction {
+    /// Force on the sheet along increasing arc length divided by Young's modulus, mm.
+    pub value: f64,
+    /// Derivative by the arc length.
+    pub by_arc_length: f64,
+    /// Derivative by the multiplier.
+    pub by_multiplier: f64,
+}
+
 /// Constants of a contact point.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactLaw {
@@ -30,6 +75,8 @@ pub struct ContactLaw {
     /// Give of the surface for a unit multiplier, ε = compliance · E / (weight · length):
     /// millimetres per millimetre.
     pub give: f64,
+    /// Friction, if there is any.
+    pub friction: Option<Friction>,
 }
 
 /// Where a contact point is and how far from the tool.
@@ -55,7 +102,7 @@ pub struct ContactRows {
 /// Tangent blocks of a contact point; `u` stands for the six displacements of the edge's nodes.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactTangent {
-    /// Equilibrium by displacement: -λ N_a N_b ∇∇φ.
+    /// Equilibrium by displacement: -N_a N_b (λ ∇∇φ + λ_t ∇∇s + dλ_t/ds ∇s ∇s).
     pub force_u: [[f64; 6]; 6],
     /// Equilibrium by multiplier.
     pub force_multiplier: [f64; 6],
@@ -92,13 +139,45 @@ impl ContactLaw {
         }
     }
 
-    /// Residual rows at multiplier and gap (mm).
-    pub fn rows(&self, distance: &Distance, multiplier: f64, gap: f64) -> ContactRows {
-        let mut force = [0.0; 6];
-        for (a, n) in self.shape.iter().enumerate() {
-            force[2 * a] = -multiplier * n * distance.gradient[0];
-            force[2 * a + 1] = -multiplier * n * distance.gradient[1];
+    /// Friction at the multiplier (mm), starting from the last accepted `state`.
+    pub fn traction(
+        &self,
+        distance: &Distance,
+        multiplier: f64,
+        state: &FrictionState,
+    ) -> Traction {
+        let Some(friction) = self.friction.filter(|_| multiplier > NO_CONTACT) else {
+            return Traction::default();
+        };
+        let trial = state.traction - (distance.arc_length - state.arc_length) / friction.give;
+        let limit = friction.coefficient * multiplier;
+        if trial.abs() <= limit {
+            Traction {
+                value: trial,
+                by_arc_length: -1.0 / friction.give,
+                by_multiplier: 0.0,
+            }
+        } else {
+            Traction {
+                value: limit.copysign(trial),
+                by_arc_length: 0.0,
+                by_multiplier: friction.coefficient.copysign(trial),
+            }
         }
+    }
+
+    /// Residual rows at multiplier and gap (mm).
+    pub fn rows(
+        &self,
+        distance: &Distance,
+        multiplier: f64,
+        gap: f64,
+        traction: &Traction,
+    ) -> ContactRows {
+        let pull: [f64; 2] = std::array::from_fn(|k| {
+            multiplier * distance.gradient[k] + traction.value * distance.arc_gradient[k]
+        });
+        let force = std::array::from_fn(|i| -self.shape[i / 2] * pull[i % 2]);
         ContactRows {
             force,
             closure: distance.value - gap + self.give * multiplier,
@@ -107,17 +186,28 @@ impl ContactLaw {
     }
 
     /// Tangent of [`Self::rows`].
-    pub fn tangent(&self, distance: &Distance, multiplier: f64) -> ContactTangent {
-        let [xx, xy, yy] = distance.hessian;
-        let hessian = [[xx, xy], [xy, yy]];
-        let slope: [f64; 6] = std::array::from_fn(|i| self.shape[i / 2] * distance.gradient[i % 2]);
+    pub fn tangent(
+        &self,
+        distance: &Distance,
+        multiplier: f64,
+        traction: &Traction,
+    ) -> ContactTangent {
+        let (normal, along) = (&distance.gradient, &distance.arc_gradient);
+        let stiffness = |i: usize, j: usize| {
+            multiplier * distance.hessian[i + j]
+                + traction.value * distance.arc_hessian[i + j]
+                + traction.by_arc_length * along[i] * along[j]
+        };
+        let slope: [f64; 6] = std::array::from_fn(|i| self.shape[i / 2] * normal[i % 2]);
         ContactTangent {
             force_u: std::array::from_fn(|i| {
                 std::array::from_fn(|j| {
-                    -multiplier * self.shape[i / 2] * self.shape[j / 2] * hessian[i % 2][j % 2]
+                    -self.shape[i / 2] * self.shape[j / 2] * stiffness(i % 2, j % 2)
                 })
             }),
-            force_multiplier: slope.map(|s| -s),
+            force_multiplier: std::array::from_fn(|i| {
+                -slope[i] - self.shape[i / 2] * traction.by_multiplier * along[i % 2]
+            }),
             closure_u: slope,
             closure_multiplier: self.give,
             closure_gap: -1.0,
@@ -136,21 +226,37 @@ mod tests {
     #[test]
     fn the_tangent_agrees_with_central_differences() {
         let tool = die(25.0, 4.0, 60.0);
+        // Open to friction: none, sticking, and slipping either way.
+        let slips = [None, Some(0.0), Some(0.9), Some(-0.9)];
+        for slip in slips {
+            tangent_agrees(&tool, slip);
+        }
+    }
+
+    fn tangent_agrees(tool: &Profile, slip: Option<f64>) {
         let law = ContactLaw {
             shape: crate::element::edge_shape(0.3),
             give: 12.0,
+            friction: slip.map(|_| Friction {
+                coefficient: 0.2,
+                give: 120.0,
+            }),
         };
         let nodes = [[26.2, -1.1], [26.9, -0.7], [26.5, -0.85]];
         let (multiplier, gap, h) = (3e-4, 0.02, 1e-6);
-        let rows = |nodes: &[[f64; 2]; 3], multiplier: f64, gap: f64| {
-            law.rows(
-                &law.position(nodes, &tool, [0.0; 2]).distance,
-                multiplier,
-                gap,
-            )
+        let distance = law.position(&nodes, tool, [0.0; 2]).distance;
+        let state = FrictionState {
+            traction: 1e-5,
+            arc_length: distance.arc_length - slip.unwrap_or(0.0),
         };
-        let distance = law.position(&nodes, &tool, [0.0; 2]).distance;
-        let exact = law.tangent(&distance, multiplier);
+        let rows = |nodes: &[[f64; 2]; 3], multiplier: f64, gap: f64| {
+            let distance = law.position(nodes, tool, [0.0; 2]).distance;
+            let traction = law.traction(&distance, multiplier, &state);
+            law.rows(&distance, multiplier, gap, &traction)
+        };
+        let traction = law.traction(&distance, multiplier, &state);
+        assert_eq!(traction.by_arc_length != 0.0, slip == Some(0.0));
+        let exact = law.tangent(&distance, multiplier, &traction);
         let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-8 * (1.0 + b.abs()), "{a} {b}");
         for j in 0..6 {
             let (mut plus, mut minus) = (nodes, nodes);

@@ -5,5 +5,7 @@
 mod law;
 mod rule;
 
-pub use law::{ContactLaw, ContactRows, ContactTangent, PointPosition};
+pub use law::{
+    ContactLaw, ContactRows, ContactTangent, Friction, FrictionState, PointPosition, Traction,
+};
 pub use rule::{ContactSample, contact_rule};

@@ -108,9 +108,9 @@ impl Quad8 {
                     volume * (xy * g[0] + yy * g[1]),
                 ]
             });
-            for a in 0..8 {
-                out.force[2 * a] += traction[a][0];
-                out.force[2 * a + 1] += traction[a][1];
+            for (force, traction) in out.force.chunks_exact_mut(2).zip(&traction) {
+                force[0] += traction[0];
+                force[1] += traction[1];
             }
             if with_stiffness {
                 add_stiffness(
@@ -169,9 +169,10 @@ fn add_stiffness(
 
 /// Copies the upper block triangle to the lower one.
 fn mirror_upper(stiffness: &mut [[f64; DOFS]; DOFS]) {
-    for i in 0..DOFS {
-        for j in 0..i {
-            stiffness[i][j] = stiffness[j][i];
+    for i in 1..DOFS {
+        let (above, below) = stiffness.split_at_mut(i);
+        for (mirrored, row) in below[0].iter_mut().zip(above) {
+            *mirrored = row[i];
         }
     }
 }

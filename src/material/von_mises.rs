@@ -74,8 +74,7 @@ impl VonMises {
     /// `state`, which is left alone.
     pub fn respond(&self, f: &[[f64; 2]; 2], state: &PointState) -> Result<Response, TurnedOver> {
         let determinant = f[0][0] * f[1][1] - f[0][1] * f[1][0];
-        // `!(… > 0)` also catches NaN.
-        if !(determinant > 0.0) {
+        if determinant.is_nan() || determinant <= 0.0 {
             return Err(TurnedOver { determinant });
         }
         let trial = PrincipalStrains::of(push_forward(f, &state.cp_inverse), state.cp_inverse[3]);

@@ -147,6 +147,8 @@ pub struct Summary {
     /// The last accepted step, if there was one.
     #[serde(rename = "final")]
     pub last: Option<StepRecord>,
+    /// Opening angles between the arms by name, degrees.
+    pub angles_deg: BTreeMap<String, f64>,
     /// Counts over the run.
     pub counts: Counts,
     /// Tolerances by name, units in the names.
@@ -244,6 +246,7 @@ mod tests {
                 force_N: 151.5,
                 ..record(40.0)
             }),
+            angles_deg: BTreeMap::new(),
             counts: Counts {
                 steps: 11,
                 refused_solves: 6,

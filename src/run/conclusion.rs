@@ -35,8 +35,8 @@ pub fn conclude(
     }
     let mut text = format!("\n{}\n{}", verdicts.text(), unread::warnings()?);
     match &outcome.failure {
-        None => text.push_str(&finished(&outcome, &verdicts)),
-        Some(failure) => text.push_str(&failed(failure, &outcome)),
+        None => text.push_str(&finished(case, &outcome, &verdicts)),
+        Some(failure) => text.push_str(&failed(case, failure, &outcome)),
     }
     outcome.recorder.show(&text);
     Ok(outcome.failure.is_none() && verdicts.failures() == 0)
@@ -155,6 +155,7 @@ fn summarise(
         status,
         reason: outcome.failure.as_ref().map(Failure::sentence),
         last: records.last().copied(),
+        angles_deg: angles(case, outcome).into_iter().collect(),
         counts: Counts {
             steps: outcome.counts.steps,
             refused_solves: outcome.counts.refused,
@@ -198,9 +199,39 @@ fn summarise(
     }
 }
 
-fn effort(outcome: &Outcome) -> Vec<(&'static str, String)> {
+/// The angles of the run, with names that say how the tools went away.
+fn angles(case: &Case, outcome: &Outcome) -> Vec<(String, f64)> {
+    let motion = case.loading.motion();
+    let records = outcome.recorder.records();
+    let at = |time: f64| {
+        records
+            .iter()
+            .find(|record| (record.t_ms - time).abs() < 1e-6)
+    };
+    let mut angles = Vec::new();
+    if let Some(record) = at(motion.time_load) {
+        angles.push(("full stroke".to_owned(), record.angle_deg));
+    }
+    if let Some(record) = at(motion.end()) {
+        angles.push(("end of the motion".to_owned(), record.angle_deg));
+    }
+    for springback in &outcome.springbacks {
+        let depth = motion.depth(springback.t_ms);
+        let name = format!("tools vanish at {depth} mm");
+        angles.push((name, springback.released_angle_deg));
+    }
+    angles
+}
+
+fn effort(case: &Case, outcome: &Outcome) -> Vec<(&'static str, String)> {
     let counts = &outcome.counts;
+    let angles = angles(case, outcome)
+        .into_iter()
+        .map(|(name, angle)| format!("{angle:.2} {name}"))
+        .collect::<Vec<_>>()
+        .join(", ");
     vec![
+        ("angles", format!("deg: {angles}")),
         (
             "steps",
             format!(
@@ -229,16 +260,16 @@ fn effort(outcome: &Outcome) -> Vec<(&'static str, String)> {
     ]
 }
 
-fn finished(outcome: &Outcome, verdicts: &VerdictTable) -> String {
+fn finished(case: &Case, outcome: &Outcome, verdicts: &VerdictTable) -> String {
     let title = match verdicts.failures() {
         0 => "every verdict holds".to_owned(),
         1 => "but 1 verdict does not hold".to_owned(),
         count => format!("but {count} verdicts do not hold"),
     };
-    finished_banner(&title, &effort(outcome))
+    finished_banner(&title, &effort(case, outcome))
 }
 
-fn failed(failure: &Failure, outcome: &Outcome) -> String {
+fn failed(case: &Case, failure: &Failure, outcome: &Outcome) -> String {
     let place = format!(
         "after step {}, t = {:.4} ms, punch down by {:.4} mm",
         outcome.counts.steps, failure.time, failure.depth
@@ -254,6 +285,6 @@ fn failed(failure: &Failure, outcome: &Outcome) -> String {
                         -contact_compliance or a finer mesh"
             .to_owned(),
     ));
-    facts.extend(effort(outcome));
+    facts.extend(effort(case, outcome));
     failed_banner(&place, &failure.reason, &facts)
 }

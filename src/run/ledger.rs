@@ -5,7 +5,7 @@ use crate::system::Measures;
 
 /// Below this force (N) imbalance is measured against it instead of the force itself: at the first
 /// touch any residual would be large against nothing.
-const LEAST_FORCE: f64 = 1.0;
+pub(super) const LEAST_FORCE: f64 = 1.0;
 
 /// How an accepted step came about.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +33,11 @@ pub struct Ledger {
 }
 
 impl Ledger {
+    /// Punch force of the last row, N.
+    pub fn force(&self) -> f64 {
+        self.force
+    }
+
     /// The row of an accepted step. The punch's work is the trapezoidal sum of its force over its
     /// way: second order in the step.
     pub fn record(&mut self, effort: &StepEffort, measures: &Measures) -> StepRecord {

@@ -9,6 +9,8 @@ mod newton;
 mod recorder;
 mod refusal;
 mod simulation;
+mod springback;
+mod static_path;
 mod step_size;
 mod unread;
 
@@ -26,6 +28,8 @@ pub use newton::Damping;
 pub use recorder::Recorder;
 pub use refusal::Refusal;
 pub use simulation::Counts;
+pub use springback::{Springback, springback};
+pub use static_path::StaticPath;
 pub use step_size::StepControl;
 
 use crate::case::{self, Case, CaseError, reference_values};
@@ -61,6 +65,8 @@ pub struct Outcome {
     pub counts: Counts,
     /// Why it stopped before the end, if it did.
     pub failure: Option<Failure>,
+    /// Angles after the tools vanish at the turning point and at the end, where they could be had.
+    pub springbacks: Vec<Springback>,
     /// PETSc's direct solver in use.
     pub factor_solver: Option<String>,
     /// Unknowns over all ranks.
@@ -106,7 +112,7 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     }
     unread::refuse_slips()?;
     let problem = Problem::new(case);
-    let motion = problem.motion;
+    let motion = case.loading.motion();
     let landmarks = landmarks(case)?;
     let system = Rc::new(System::new(problem, comm.duplicate())?);
     let unknowns = system.unknown_count();
@@ -130,6 +136,7 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
         recorder: simulation.into_recorder(),
         counts: finish.counts,
         failure,
+        springbacks: finish.springbacks,
         factor_solver: finish.factor_solver,
         unknowns,
     }))

@@ -1,6 +1,7 @@
 //! Hands what the run knows to the output: monitor, history, fields, figures.
 
 use std::io::stdout;
+use std::sync::Arc;
 
 use mpi::traits::Communicator;
 
@@ -10,8 +11,8 @@ use crate::output::{
     ContactFile, ContactSample, FieldSample, History, Monitor, OutputDir, OutputError, SheetFile,
     SheetPart, StepRecord, ToolsFile,
 };
-use crate::system::{NodeSample, System};
-use crate::tool::Profile;
+use crate::system::{NodeSample, System, Tool};
+use crate::tool::PunchMotion;
 
 /// Spacing of the points of the drawn tools, mm.
 const TOOL_SPACING: f64 = 0.25;
@@ -28,6 +29,7 @@ pub struct Recorder {
     tools: ToolsFile,
     contact: ContactFile,
     part: SheetPart,
+    motion: PunchMotion,
     every: usize,
     records: Vec<StepRecord>,
 }
@@ -58,17 +60,18 @@ impl Recorder {
             rank: comm.rank(),
         };
         Ok(Self {
-            monitor: Monitor::new(comm.rank(), stdout(), problem.motion.end()),
+            monitor: Monitor::new(comm.rank(), stdout(), case.loading.motion().end()),
             history,
             sheet: SheetFile::create(folder.fields(), comm, &part)?,
             part,
             tools: ToolsFile::create(
                 folder.tools(),
                 comm,
-                &problem.die.polyline(TOOL_SPACING),
-                &problem.punch.polyline(TOOL_SPACING),
+                &outline(problem.lower_tool.as_deref(), TOOL_SPACING),
+                &outline(problem.upper_tool.as_deref(), TOOL_SPACING),
             )?,
             contact: ContactFile::create(folder.contact(), comm, &points)?,
+            motion: case.loading.motion(),
             every: case.output.every,
             folder,
             records: Vec::new(),
@@ -110,7 +113,7 @@ impl Recorder {
 
     /// Whether the fields of the last step are due; the ends of loading and unloading always are.
     pub fn fields_due(&self, is_end: bool) -> bool {
-        is_end || (self.every > 0 && self.records.len() % self.every == 0)
+        is_end || (self.every > 0 && self.records.len().is_multiple_of(self.every))
     }
 
     /// Draws the deformed sheet between the tools at time `t` (ms), under the name `label`. Collective.
@@ -131,16 +134,16 @@ impl Recorder {
         }
         let local = system.local();
         let problem = local.problem();
-        let depth = problem.motion.depth(t);
-        let right_half = |profile: &Profile| -> Vec<[f64; 2]> {
-            let points = profile.polyline(FINE_TOOL_SPACING);
+        let depth = self.motion.depth(t);
+        let right_half = |tool: &Option<Arc<Tool>>| -> Vec<[f64; 2]> {
+            let points = outline(tool.as_deref(), FINE_TOOL_SPACING);
             points
                 .into_iter()
                 .filter(|point| point[0] > -1e-9)
                 .collect()
         };
-        let die = right_half(&problem.die);
-        let mut punch = right_half(&problem.punch);
+        let die = right_half(&problem.lower_tool);
+        let mut punch = right_half(&problem.upper_tool);
         // The punch is walked from its side to its tip; the figure wants it the other way.
         punch.reverse();
         let figure = Shape {
@@ -190,13 +193,17 @@ impl Recorder {
             .map(|point| ContactSample {
                 displacement: point.displacement,
                 contact_pressure: point.pressure,
-                friction_traction: 0.0,
+                friction_traction: point.friction,
                 gap: point.gap,
-                contact_status: i32::from(point.active),
+                contact_status: if point.active {
+                    1 + i32::from(point.slips)
+                } else {
+                    0
+                },
             })
             .collect();
         self.sheet.write(t, &samples)?;
-        self.tools.write(t, local.problem().motion.depth(t))?;
+        self.tools.write(t, self.motion.depth(t))?;
         self.contact.write(t, &points)
     }
 }
@@ -211,4 +218,9 @@ fn field_sample(node: &NodeSample) -> FieldSample {
         gap: node.gap,
         contact_status: i32::from(node.contact_pressure > 0.0),
     }
+}
+
+/// Outline of a tool in its first position, with `spacing` (mm) between points.
+fn outline(tool: Option<&Tool>, spacing: f64) -> Vec<[f64; 2]> {
+    tool.map_or_else(Vec::new, |tool| tool.profile.polyline(spacing))
 }

@@ -3,17 +3,26 @@
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
-use petsc::{CallbackError, SnesReason, SnesRef, Ts, TsReason, TsRef, Vector, VectorRef};
+use petsc::{
+    CallbackError, ConvergenceCheck, SnesReason, SnesRef, Ts, TsReason, TsRef, Vector, VectorRef,
+};
 
-use super::ledger::{Ledger, StepEffort};
+use super::ledger::{LEAST_FORCE, Ledger, StepEffort};
 use super::newton::Damping;
 use super::recorder::Recorder;
 use super::refusal::Refusal;
+use super::springback::{Springback, springback};
 use super::step_size::StepControl;
 use super::{RunError, defaults};
 use crate::case::{Case, Dynamics};
 use crate::output::StepRecord;
 use crate::system::{FieldSampler, System};
+use crate::tool::PunchMotion;
+
+/// Largest imbalance of a converged solve as a share of the last punch force.
+const BALANCE_SHARE: f64 = 3e-7;
+/// Below this residual norm (mm) rounding may be all that is left.
+const BALANCE_FLOOR: f64 = 1e-12;
 
 /// What the hooks of the time stepper share.
 pub(super) struct Simulation {
@@ -33,10 +42,11 @@ pub(super) struct Simulation {
     /// Length of the step being tried, ms.
     attempted: Cell<f64>,
     least_step: f64,
-    turning_time: f64,
+    motion: PunchMotion,
     /// Solves of the present step so far.
     refusals: RefCell<Vec<Refusal>>,
     counts: Cell<Counts>,
+    springbacks: RefCell<Vec<Springback>>,
 }
 
 /// Work done over the run.
@@ -57,6 +67,7 @@ pub(super) struct Finish {
     /// Why the solves of the last step were refused, if it never was accepted.
     pub refusals: Vec<Refusal>,
     pub time: f64,
+    pub springbacks: Vec<Springback>,
     /// PETSc's direct solver in use.
     pub factor_solver: Option<String>,
 }
@@ -87,9 +98,10 @@ impl Simulation {
             extrapolate: stepping.extrapolate,
             attempted: Cell::new(0.0),
             least_step: stepping.dt_min,
-            turning_time: case.loading.time_load,
+            motion: case.loading.motion(),
             refusals: RefCell::default(),
             counts: Cell::default(),
+            springbacks: RefCell::default(),
             system,
         })
     }
@@ -115,6 +127,7 @@ impl Simulation {
             counts: self.counts.get(),
             refusals: self.refusals.take(),
             time: self.accepted_time.get(),
+            springbacks: self.springbacks.take(),
             factor_solver,
         })
     }
@@ -135,9 +148,9 @@ impl Simulation {
                     matrix,
                     move |t, u, _, a, out| for_residual.residual(t, u, Some(a), out),
                     move |t, u, _, _, _, shift, out| {
-                        Ok(for_jacobian
+                        for_jacobian
                             .jacobian(t, u, shift, out)
-                            .map_err(not_evaluated)?)
+                            .map_err(not_evaluated)
                     },
                 )?;
                 let mut still = self.system.vector()?;
@@ -153,9 +166,7 @@ impl Simulation {
                     matrix,
                     move |t, u, _, out| for_residual.residual(t, u, None, out),
                     move |t, u, _, _, out| {
-                        Ok(for_jacobian
-                            .jacobian(t, u, 0.0, out)
-                            .map_err(not_evaluated)?)
+                        for_jacobian.jacobian(t, u, 0.0, out).map_err(not_evaluated)
                     },
                 )?;
                 ts.set_solution(&start)?;
@@ -173,6 +184,8 @@ impl Simulation {
         ts.set_post_step(move |ts| this.after_step(ts))?;
         let snes = ts.snes_mut()?;
         let this = Rc::clone(self);
+        snes.set_convergence_test(move |snes, check| this.balanced(snes, check))?;
+        let this = Rc::clone(self);
         snes.set_initial_guess(move |guess| this.extrapolate(guess))?;
         let this = Rc::clone(self);
         snes.set_shell_line_search(move |info| {
@@ -183,6 +196,25 @@ impl Simulation {
                 .step_length(iteration, info.residual_norm))
         })?;
         Ok(())
+    }
+
+    /// A small residual is not enough: its vertical sum is the imbalance of the tools' forces, which
+    /// must be small against those.
+    fn balanced(
+        &self,
+        snes: &SnesRef,
+        check: &ConvergenceCheck,
+    ) -> Result<SnesReason, CallbackError> {
+        if check.default != SnesReason::ConvergedAbsolute || check.residual_norm <= BALANCE_FLOOR {
+            return Ok(check.default);
+        }
+        let imbalance = self.system.vertical_sum(snes.function()?)?;
+        let limit = BALANCE_SHARE * self.ledger.borrow().force().abs().max(LEAST_FORCE);
+        Ok(if imbalance.abs() <= limit {
+            check.default
+        } else {
+            SnesReason::Iterating
+        })
     }
 
     fn before_solve(&self, ts: &mut TsRef) -> Result<(), CallbackError> {
@@ -248,7 +280,7 @@ impl Simulation {
             let next = control.accepted(t, dt, record.newton_iterations as usize);
             (next, control.is_at(t, control.end()))
         };
-        let turning = self.control.borrow().is_at(t, self.turning_time);
+        let turning = self.control.borrow().is_at(t, self.motion.time_load);
         let label = match (turning, ended) {
             (true, _) => Some("full stroke"),
             (false, true) => Some("end"),
@@ -256,6 +288,10 @@ impl Simulation {
         };
         if self.recorder.borrow().fields_due(label.is_some()) {
             self.write_fields(t, ts.solution()?, label)?;
+        }
+        if label.is_some() {
+            let found = springback(&self.system, t, ts.solution()?)?;
+            self.springbacks.borrow_mut().extend(found);
         }
         if ended {
             ts.set_converged_reason(TsReason::ConvergedTime)?;
@@ -269,13 +305,13 @@ impl Simulation {
     fn accept(&self, ts: &TsRef, t: f64, dt: f64) -> Result<StepRecord, CallbackError> {
         let solution = ts.solution()?;
         let velocity = self.velocity(ts)?;
-        self.system.commit(solution)?;
+        self.system.commit(t, solution)?;
         let measures = self.system.measures(t, solution, velocity)?;
         let refused = self.refusals.take().len();
         let effort = StepEffort {
             t,
             dt,
-            depth: self.system.local().problem().motion.depth(t),
+            depth: self.motion.depth(t),
             newton_iterations: ts.snes()?.iteration_number()?.unsigned_abs(),
             residual_norm: ts.snes()?.function_norm()?,
             refused_solves: u32::try_from(refused)?,
@@ -298,7 +334,7 @@ impl Simulation {
     }
 
     fn remember(&self, solution: &VectorRef, t: f64, dt: f64) -> Result<(), CallbackError> {
-        let turned = self.control.borrow().is_at(t, self.turning_time);
+        let turned = self.control.borrow().is_at(t, self.motion.time_load);
         let before = self.accepted.replace(solution.to_owned()?);
         self.before
             .replace(if turned { None } else { Some((before, dt)) });
@@ -324,7 +360,7 @@ impl Simulation {
 }
 
 /// The tangent is asked for where the residual was evaluated before: it cannot fail alone.
-fn not_evaluated(failure: petsc::Failure) -> CallbackError {
+pub(super) fn not_evaluated(failure: petsc::Failure) -> CallbackError {
     match failure {
         petsc::Failure::Fatal(error) => error,
         petsc::Failure::Domain => "the tangent cannot be evaluated where the residual was".into(),

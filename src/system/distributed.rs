@@ -10,7 +10,7 @@ use petsc::{Evaluation, Failure, Matrix, MatrixRef, Scatter, Vector, VectorRef};
 
 use super::evaluate::ElementFailure;
 use super::{LocalSystem, Measures, Numbering, PartialMeasures, Problem, UNKNOWNS_PER_POINT};
-use crate::mesh::{PartitionError, partition};
+use crate::mesh::{Partition, PartitionError, partition};
 
 /// The system could not be set up or evaluated.
 #[derive(Debug, thiserror::Error)]
@@ -39,8 +39,10 @@ struct Scratch {
 /// alone; [`System::commit`] moves it on.
 pub struct System {
     comm: SimpleCommunicator,
+    /// Rank of every element.
+    pub(super) parts: Partition,
     numbering: Numbering,
-    local: RefCell<LocalSystem>,
+    pub(super) local: RefCell<LocalSystem>,
     scatter: Scatter,
     template: Vector,
     scratch: RefCell<Scratch>,
@@ -60,8 +62,17 @@ impl System {
     /// # Errors
     /// If METIS or PETSc fails.
     pub fn new(problem: Problem, comm: SimpleCommunicator) -> Result<Self, SystemError> {
-        let (ranks, rank) = (comm.size() as usize, comm.rank() as usize);
         let parts = partition_on_root(&problem, &comm)?;
+        Ok(Self::with_partition(problem, parts, comm)?)
+    }
+
+    /// As [`System::new`] with the elements' ranks given.
+    pub(super) fn with_partition(
+        problem: Problem,
+        parts: Partition,
+        comm: SimpleCommunicator,
+    ) -> petsc::Result<Self> {
+        let (ranks, rank) = (comm.size() as usize, comm.rank() as usize);
         let numbering = Numbering::new(&problem.mesh, &parts, ranks, problem.contact_samples.len());
         let local = LocalSystem::new(problem, &parts, &numbering, rank);
         let template = Vector::new(&comm, numbering.row_count(rank))?;
@@ -76,6 +87,7 @@ impl System {
                 jacobian: vec![0.0; local.jacobian_entries()],
             }),
             comm,
+            parts,
             numbering,
             local: RefCell::new(local),
             scatter,
@@ -222,6 +234,24 @@ impl System {
         self.note(evaluated)
     }
 
+    /// Vertical sum of the equilibrium rows of a residual as a force of the whole sheet, N. Collective.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn vertical_sum(&self, residual: &VectorRef) -> petsc::Result<f64> {
+        let count = self.owned_displacements();
+        let mine: f64 = residual.read()?[..count]
+            .chunks_exact(2)
+            .map(|xy| xy[1])
+            .sum();
+        let mut sum = 0.0;
+        self.comm
+            .all_reduce_into(&mine, &mut sum, SystemOperation::sum());
+        let local = self.local();
+        let problem = local.problem();
+        Ok(problem.whole_sheet * problem.young_modulus * sum)
+    }
+
     fn note(&self, evaluated: Result<(), ElementFailure>) -> Evaluation {
         evaluated.map_err(|failure| {
             self.failure.replace(Some(failure));
@@ -234,14 +264,14 @@ impl System {
         self.failure.take()
     }
 
-    /// Takes the states at unknowns `u` as history. Collective.
+    /// Takes the states at time `t` and unknowns `u` as history. Collective.
     ///
     /// # Errors
     /// If an element cannot be evaluated at `u`.
-    pub fn commit(&self, u: &VectorRef) -> Result<(), SystemError> {
+    pub fn commit(&self, t: f64, u: &VectorRef) -> Result<(), SystemError> {
         let mut scratch = self.scratch.borrow_mut();
         self.scatter.forward(u, &mut scratch.u)?;
-        self.local.borrow_mut().commit(&scratch.u)?;
+        self.local.borrow_mut().commit(t, &scratch.u)?;
         Ok(())
     }
 
@@ -305,7 +335,7 @@ impl System {
 fn partition_on_root(
     problem: &Problem,
     comm: &SimpleCommunicator,
-) -> Result<Vec<usize>, PartitionError> {
+) -> Result<Partition, PartitionError> {
     let ranks = comm.size() as usize;
     if ranks == 1 {
         return partition(&problem.mesh, 1);

@@ -7,8 +7,11 @@
 //! ```
 
 use super::LocalSystem;
+use super::local::LocalContact;
 use super::pattern::{CONTACT_ENTRIES, ELEMENT_ENTRIES};
+use crate::contact::FrictionState;
 use crate::element::{ElementForce, SinglePointFailure};
+use crate::tool::Distance;
 
 /// An element that cannot be evaluated.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -36,9 +39,14 @@ impl LocalSystem {
         self.add_internal_forces(u, out)?;
         self.add_inertia(a, out);
         self.add_contact(t, u, out);
-        for &unknown in &self.fixed {
+        let scale = 1.0 / self.problem.young_modulus;
+        for load in &self.loads {
+            out[load.unknown] -= scale * load.value * load.factor.at(t);
+        }
+        for support in &self.supports {
+            let unknown = support.unknown;
             out[unknown] = if self.owned[unknown / 2] {
-                u[unknown]
+                u[unknown] - support.value * support.factor.at(t)
             } else {
                 0.0
             };
@@ -46,7 +54,11 @@ impl LocalSystem {
         Ok(())
     }
 
-    fn add_internal_forces(&self, u: &[f64], out: &mut [f64]) -> Result<(), ElementFailure> {
+    pub(super) fn add_internal_forces(
+        &self,
+        u: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), ElementFailure> {
         let scale = 1.0 / self.problem.young_modulus;
         let mut local = ElementForce::ZERO;
         for element in 0..self.elements.len() {
@@ -79,11 +91,9 @@ impl LocalSystem {
     fn add_contact(&self, t: f64, u: &[f64], out: &mut [f64]) {
         for (point, contact) in self.contacts.iter().enumerate() {
             let m = self.multiplier(point);
-            let (tool, shift) = self.problem.tool(contact.side, t);
-            let position = contact
-                .law
-                .position(&self.edge_positions(contact, u), tool, shift);
-            let rows = contact.law.rows(&position.distance, u[m], u[m + 1]);
+            let distance = self.contact_distance(contact, t, u);
+            let traction = contact.law.traction(&distance, u[m], &contact.state);
+            let rows = contact.law.rows(&distance, u[m], u[m + 1], &traction);
             for (i, force) in rows.force.iter().enumerate() {
                 out[2 * contact.nodes[i / 2] + i % 2] += force;
             }
@@ -104,7 +114,7 @@ impl LocalSystem {
         let scale = 1.0 / self.problem.young_modulus;
         let inertia = scale * shift * self.problem.density;
         let (element_values, rest) = values.split_at_mut(ELEMENT_ENTRIES * self.elements.len());
-        let (contact_values, fixed) = rest.split_at_mut(CONTACT_ENTRIES * self.contacts.len());
+        let (contact_values, supports) = rest.split_at_mut(CONTACT_ENTRIES * self.contacts.len());
         let mut local = ElementForce::ZERO;
         for (element, out) in element_values.chunks_exact_mut(ELEMENT_ENTRIES).enumerate() {
             self.element_force(element, u, true, &mut local)?;
@@ -122,19 +132,16 @@ impl LocalSystem {
         for (point, out) in contact_values.chunks_exact_mut(CONTACT_ENTRIES).enumerate() {
             self.contact_jacobian(t, u, point, out);
         }
-        fixed.fill(1.0);
+        supports.fill(1.0);
         Ok(())
     }
 
     fn contact_jacobian(&self, t: f64, u: &[f64], point: usize, out: &mut [f64]) {
         let contact = &self.contacts[point];
-        let (tool, shift) = self.problem.tool(contact.side, t);
-        let position = contact
-            .law
-            .position(&self.edge_positions(contact, u), tool, shift);
-        let tangent = contact
-            .law
-            .tangent(&position.distance, u[self.multiplier(point)]);
+        let multiplier = u[self.multiplier(point)];
+        let distance = self.contact_distance(contact, t, u);
+        let traction = contact.law.traction(&distance, multiplier, &contact.state);
+        let tangent = contact.law.tangent(&distance, multiplier, &traction);
         for (i, row) in tangent.force_u.iter().enumerate() {
             out[6 * i..6 * (i + 1)].copy_from_slice(row);
         }
@@ -180,8 +187,15 @@ impl LocalSystem {
         }
     }
 
-    /// Takes the states at unknowns `u` as history. Call it once per accepted step.
-    pub fn commit(&mut self, u: &[f64]) -> Result<(), ElementFailure> {
+    /// Distance of a contact point to its tool at time `t`.
+    pub(super) fn contact_distance(&self, contact: &LocalContact, t: f64, u: &[f64]) -> Distance {
+        contact
+            .position(&self.edge_positions(contact, u), t)
+            .distance
+    }
+
+    /// Takes the states at time `t` and unknowns `u` as history. Call it once per accepted step.
+    pub fn commit(&mut self, t: f64, u: &[f64]) -> Result<(), ElementFailure> {
         let count = self.problem.quadrature.point_count();
         for element in 0..self.elements.len() {
             let values = self.element_values(element, u);
@@ -193,6 +207,26 @@ impl LocalSystem {
                 self.states[index] = response.state;
             }
         }
+        self.commit_friction(t, u);
         Ok(())
+    }
+
+    fn commit_friction(&mut self, t: f64, u: &[f64]) {
+        for point in 0..self.contacts.len() {
+            let multiplier = u[self.multiplier(point)];
+            let contact = &self.contacts[point];
+            let distance = self.contact_distance(contact, t, u);
+            let traction = contact
+                .law
+                .traction(&distance, multiplier, &contact.state)
+                .value;
+            let slip = distance.arc_length - contact.state.arc_length;
+            let mean_force = 0.5 * self.problem.young_modulus * (contact.state.traction + traction);
+            self.friction_work -= mean_force * slip;
+            self.contacts[point].state = FrictionState {
+                traction,
+                arc_length: distance.arc_length,
+            };
+        }
     }
 }

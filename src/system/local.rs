@@ -4,9 +4,11 @@
 //! and gap of each local contact point.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
+use super::problem::{Factor, NodalValue, Tool};
 use super::{Numbering, Problem, UNKNOWNS_PER_POINT};
-use crate::contact::ContactLaw;
+use crate::contact::{ContactLaw, ContactSample, Friction, FrictionState, PointPosition};
 use crate::element::Quad8;
 use crate::material::PointState;
 use crate::mesh::{Partition, SurfaceSide};
@@ -16,12 +18,45 @@ use crate::mesh::{Partition, SurfaceSide};
 pub(super) struct LocalContact {
     /// Face of the sheet.
     pub side: SurfaceSide,
+    /// The tool that face can touch.
+    pub tool: Arc<Tool>,
     /// Local nodes of its edge: left end, right end, middle.
     pub nodes: [usize; 3],
     /// Its constants.
     pub law: ContactLaw,
     /// Length of sheet it stands for, mm.
     pub length: f64,
+    /// Committed friction.
+    pub state: FrictionState,
+}
+
+impl LocalContact {
+    /// Position of the point and its distance to its tool at time `t` (ms), for the current positions
+    /// of its edge's nodes.
+    pub fn position(&self, nodes: &[[f64; 2]; 3], t: f64) -> PointPosition {
+        self.law
+            .position(nodes, &self.tool.profile, self.tool.motion.shift(t))
+    }
+
+    /// Whether the committed friction is at its limit for this multiplier.
+    pub fn slips(&self, multiplier: f64) -> bool {
+        let limit = self
+            .law
+            .friction
+            .map_or(0.0, |friction| friction.coefficient * multiplier);
+        self.state.traction.abs() >= limit * (1.0 - 1e-9)
+    }
+}
+
+/// A prescribed displacement or a load at a local unknown.
+#[derive(Clone, Debug)]
+pub(super) struct LocalValue {
+    /// Local number of the unknown.
+    pub unknown: usize,
+    /// Value at factor one, mm or N per mm of width.
+    pub value: f64,
+    /// The factor against time.
+    pub factor: Factor,
 }
 
 /// This rank's share of the problem and the committed history of its material points.
@@ -40,12 +75,16 @@ pub struct LocalSystem {
     pub(super) connectivity: Vec<[usize; 8]>,
     pub(super) kernels: Vec<Quad8>,
     pub(super) contacts: Vec<LocalContact>,
-    /// Local x unknowns of the nodes on the symmetry line.
-    pub(super) fixed: Vec<usize>,
+    /// Prescribed displacements.
+    pub(super) supports: Vec<LocalValue>,
+    /// Dead loads at nodes this rank owns.
+    pub(super) loads: Vec<LocalValue>,
     /// Global row of each local unknown.
     pub(super) rows: Vec<i32>,
     /// Committed states, Gauss point by Gauss point, element by element.
     pub(super) states: Vec<PointState>,
+    /// Committed work of friction, mJ per mm of width.
+    pub(super) friction_work: f64,
 }
 
 impl LocalSystem {
@@ -92,6 +131,9 @@ impl LocalSystem {
             .collect();
         let mut contacts = Vec::new();
         for (index, edge) in mesh.surface.iter().enumerate() {
+            let Some(tool) = problem.tool(edge.side) else {
+                continue;
+            };
             if partition[edge.element] != rank {
                 continue;
             }
@@ -102,10 +144,16 @@ impl LocalSystem {
                 let length = sample.weight * edge_length;
                 contacts.push(LocalContact {
                     side: edge.side,
+                    tool: Arc::clone(tool),
                     nodes: edge_nodes.map(|n| local_of[&n]),
+                    state: starting_friction(&problem, tool, edge_nodes, sample),
                     law: ContactLaw {
                         shape: sample.shape,
                         give: problem.contact_compliance * problem.young_modulus / length,
+                        friction: (problem.friction_coefficient > 0.0).then(|| Friction {
+                            coefficient: problem.friction_coefficient,
+                            give: problem.friction_compliance * problem.young_modulus / length,
+                        }),
                     },
                     length,
                 });
@@ -113,24 +161,37 @@ impl LocalSystem {
                 rows.extend([row as i32, row as i32 + 1]);
             }
         }
-        let fixed = mesh
-            .symmetry_nodes
+        let owned: Vec<bool> = nodes
             .iter()
-            .filter_map(|n| local_of.get(n).map(|local| 2 * local))
+            .map(|&n| numbering.node_owner[n] == rank)
+            .collect();
+        let local_value = |value: &NodalValue| {
+            let local = local_of.get(&value.node)?;
+            Some(LocalValue {
+                unknown: 2 * local + value.component,
+                value: value.value,
+                factor: value.factor.clone(),
+            })
+        };
+        let supports = problem.supports.iter().filter_map(local_value).collect();
+        let loads = problem
+            .loads
+            .iter()
+            .filter_map(local_value)
+            .filter(|load| owned[load.unknown / 2])
             .collect();
         let states = vec![PointState::VIRGIN; elements.len() * problem.quadrature.point_count()];
         Self {
-            owned: nodes
-                .iter()
-                .map(|&n| numbering.node_owner[n] == rank)
-                .collect(),
+            owned,
+            supports,
+            loads,
+            friction_work: 0.0,
             nodes,
             coordinates,
             elements,
             connectivity,
             kernels,
             contacts,
-            fixed,
             rows,
             states,
             problem,
@@ -174,5 +235,20 @@ impl LocalSystem {
     pub(super) fn element_states(&self, element: usize) -> &[PointState] {
         let count = self.problem.quadrature.point_count();
         &self.states[count * element..count * (element + 1)]
+    }
+}
+
+/// Friction before anything has moved: none, at the foot point of the point's first position.
+fn starting_friction(
+    problem: &Problem,
+    tool: &Tool,
+    edge_nodes: [usize; 3],
+    sample: &ContactSample,
+) -> FrictionState {
+    let nodes = edge_nodes.map(|n| problem.mesh.nodes[n]);
+    let x = [0, 1].map(|k| (0..3).map(|a| sample.shape[a] * nodes[a][k]).sum());
+    FrictionState {
+        traction: 0.0,
+        arc_length: tool.profile.distance(x).arc_length,
     }
 }

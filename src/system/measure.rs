@@ -21,7 +21,7 @@ pub struct PartialMeasures {
 }
 
 const SUMS: usize = 18;
-const MAXIMA: usize = 5;
+const MAXIMA: usize = 6;
 
 /// Measures of the whole sheet (both halves, full width) at one state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +38,7 @@ pub struct Measures {
     pub strain_energy: f64,
     /// Plastic work since the start, mJ.
     pub plastic_dissipation: f64,
-    /// Energy stored in the surface's give, mJ.
+    /// Work taken by the surface's give and by friction, mJ.
     pub contact_energy: f64,
     /// Contact points that carry a force, in the half model.
     pub active_points: usize,
@@ -60,6 +60,9 @@ pub struct Measures {
     pub max_complementarity: f64,
     /// Largest equivalent plastic strain.
     pub max_plastic_strain: f64,
+    /// Largest excess of friction over the coefficient times the contact force of a point, N; not
+    /// positive if the cone holds.
+    pub max_cone_violation: f64,
 }
 
 impl LocalSystem {
@@ -76,6 +79,7 @@ impl LocalSystem {
             sums: [0.0; SUMS],
             maxima: [f64::NEG_INFINITY; MAXIMA],
         };
+        partial.sums[6] = self.friction_work;
         self.measure_contact(t, u, &mut partial);
         self.measure_elements(u, v, a, &mut partial)?;
         self.measure_shape(t, u, &mut partial);
@@ -87,12 +91,18 @@ impl LocalSystem {
         for (point, contact) in self.contacts.iter().enumerate() {
             let m = self.multiplier(point);
             let (force, gap) = (young * u[m], u[m + 1]);
-            let (tool, shift) = self.problem.tool(contact.side, t);
             let nodes = self.edge_positions(contact, u);
-            let distance = contact.law.position(&nodes, tool, shift).distance;
+            let distance = contact.position(&nodes, t).distance;
+            // The state is committed, so its traction is the present one.
+            let friction = young * contact.state.traction;
+            let upward = force * distance.gradient[1] + friction * distance.arc_gradient[1];
             match contact.side {
-                SurfaceSide::Top => partial.sums[0] -= force * distance.gradient[1],
-                SurfaceSide::Bottom => partial.sums[1] += force * distance.gradient[1],
+                SurfaceSide::Top => partial.sums[0] -= upward,
+                SurfaceSide::Bottom => partial.sums[1] += upward,
+            }
+            if let Some(law) = contact.law.friction {
+                let beyond = friction.abs() - law.coefficient * force.max(0.0);
+                partial.maxima[5] = partial.maxima[5].max(beyond);
             }
             partial.sums[6] += 0.5 * force * contact.law.give * u[m];
             if gap <= 0.0 && force > 0.0 {
@@ -108,7 +118,7 @@ impl LocalSystem {
                 for k in 0..=probes {
                     let shape = crate::element::edge_shape(2.0 * k as f64 / probes as f64 - 1.0);
                     let x = [0, 1].map(|i| (0..3).map(|b| shape[b] * nodes[b][i]).sum::<f64>());
-                    let value = tool.distance([x[0] - shift[0], x[1] - shift[1]]).value;
+                    let value = contact.tool.distance(x, t).value;
                     maxima[0] = maxima[0].max(-value);
                 }
             }
@@ -161,9 +171,10 @@ impl LocalSystem {
             let before = self.coordinates[local];
             let now = [before[0] + u[2 * local], before[1] + u[2 * local + 1]];
             if node == mesh.point_a {
-                let (tool, shift) = self.problem.tool(SurfaceSide::Top, t);
                 partial.sums[8] += u[2 * local + 1];
-                partial.sums[9] += tool.distance([now[0] - shift[0], now[1] - shift[1]]).value;
+                if let Some(tool) = &self.problem.upper_tool {
+                    partial.sums[9] += tool.distance(now, t).value;
+                }
             }
             if before[0] >= ARM_START * half_length {
                 // Measured from the sheet's end, so that nothing cancels when the means are taken.
@@ -211,6 +222,7 @@ impl Measures {
             max_contact_force: whole_sheet * maxima[2],
             max_complementarity: whole_sheet * maxima[3],
             max_plastic_strain: maxima[4],
+            max_cone_violation: whole_sheet * maxima[5].max(0.0),
         }
     }
 }

@@ -9,6 +9,7 @@ mod measure;
 mod numbering;
 mod pattern;
 mod problem;
+mod release;
 mod sample;
 mod seed;
 
@@ -17,6 +18,6 @@ pub use evaluate::ElementFailure;
 pub use local::LocalSystem;
 pub use measure::{Measures, PartialMeasures};
 pub use numbering::{Numbering, UNKNOWNS_PER_POINT};
-pub use problem::Problem;
+pub use problem::{Factor, NodalValue, Problem, Tool};
 pub use sample::{ContactPointSample, FieldSampler, NodeSample};
 pub use seed::Seed;

@@ -3,6 +3,7 @@
 //! Entries with a negative row are ignored by the matrix: those of the fixed displacements.
 
 use super::LocalSystem;
+use super::local::LocalValue;
 
 /// Entries of one element.
 pub(super) const ELEMENT_ENTRIES: usize = 256;
@@ -13,8 +14,8 @@ impl LocalSystem {
     /// Global rows and columns of all entries this rank contributes.
     pub fn jacobian_pattern(&self) -> (Vec<i32>, Vec<i32>) {
         let mut free_rows = self.rows.clone();
-        for &unknown in &self.fixed {
-            free_rows[unknown] = -1;
+        for support in &self.supports {
+            free_rows[support.unknown] = -1;
         }
         let mut rows = Vec::with_capacity(self.jacobian_entries());
         let mut columns = Vec::with_capacity(rows.capacity());
@@ -44,7 +45,7 @@ impl LocalSystem {
                 block(&own, &gap);
             }
         }
-        for &unknown in &self.fixed {
+        for &LocalValue { unknown, .. } in &self.supports {
             // The owner keeps a one on the diagonal; the others add nothing.
             let row = if self.owned[unknown / 2] {
                 self.rows[unknown]
@@ -61,6 +62,6 @@ impl LocalSystem {
     pub fn jacobian_entries(&self) -> usize {
         ELEMENT_ENTRIES * self.elements.len()
             + CONTACT_ENTRIES * self.contacts.len()
-            + self.fixed.len()
+            + self.supports.len()
     }
 }

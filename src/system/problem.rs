@@ -1,16 +1,18 @@
-//! What is solved: the sheet, its material, the tools and their motion.
+//! What is solved: a sheet, its material, supports and loads, and the tools with their motion.
+
+use std::sync::Arc;
 
 use crate::case::{Case, Dynamics, Tools};
 use crate::contact::{ContactSample, contact_rule};
 use crate::element::Quadrature;
 use crate::material::VonMises;
 use crate::mesh::{SheetMesh, SurfaceSide};
-use crate::tool::{Profile, PunchMotion, die, punch};
+use crate::tool::{Distance, Motion, Profile, die, punch};
 
 /// The whole problem, the same on every rank.
 #[derive(Clone, Debug)]
 pub struct Problem {
-    /// Mesh of the half sheet.
+    /// Mesh of the sheet.
     pub mesh: SheetMesh,
     /// Material of the sheet.
     pub material: VonMises,
@@ -20,18 +22,71 @@ pub struct Problem {
     pub density: f64,
     /// Gauss rule of the elements.
     pub quadrature: Quadrature,
+    /// Prescribed displacements.
+    pub supports: Vec<NodalValue>,
+    /// Dead loads, N per mm of width.
+    pub loads: Vec<NodalValue>,
     /// Contact points of the reference edge.
     pub contact_samples: Vec<ContactSample>,
     /// Give of the surface under unit pressure, mm/MPa.
     pub contact_compliance: f64,
-    /// The fixed die.
-    pub die: Profile,
-    /// The punch at the start of its motion.
-    pub punch: Profile,
-    /// Motion of the punch.
-    pub motion: PunchMotion,
+    /// Coulomb's coefficient of friction.
+    pub friction_coefficient: f64,
+    /// Elastic slip under unit friction traction, mm/MPa.
+    pub friction_compliance: f64,
+    /// The tool the lower face can touch.
+    pub lower_tool: Option<Arc<Tool>>,
+    /// The tool the upper face can touch.
+    pub upper_tool: Option<Arc<Tool>>,
     /// Half model force per millimetre of width to force of the whole sheet, mm.
     pub whole_sheet: f64,
+}
+
+/// A value at a node that is proportional to a function of time.
+#[derive(Clone, Debug)]
+pub struct NodalValue {
+    /// Node of the mesh.
+    pub node: usize,
+    /// 0 for x, 1 for y.
+    pub component: usize,
+    /// Value at factor one: mm, or N per mm of width.
+    pub value: f64,
+    /// The factor against time.
+    pub factor: Factor,
+}
+
+/// A factor against time, linear between the points and constant outside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Factor(pub Vec<(f64, f64)>);
+
+/// A rigid tool and its motion.
+#[derive(Clone, Debug)]
+pub struct Tool {
+    /// Outline in its first position.
+    pub profile: Profile,
+    /// How it moves.
+    pub motion: Motion,
+}
+
+impl Tool {
+    /// Signed distance of `x` (mm) to the tool at time `t` (ms).
+    pub fn distance(&self, x: [f64; 2], t: f64) -> Distance {
+        let shift = self.motion.shift(t);
+        self.profile.distance([x[0] - shift[0], x[1] - shift[1]])
+    }
+}
+
+impl Factor {
+    /// The factor at time `t` (ms).
+    pub fn at(&self, t: f64) -> f64 {
+        let points = &self.0;
+        let after = points.partition_point(|&(time, _)| time < t);
+        match (after.checked_sub(1).map(|i| points[i]), points.get(after)) {
+            (Some((t0, f0)), Some(&(t1, f1))) => f0 + (f1 - f0) * (t - t0) / (t1 - t0),
+            (None, Some(&(_, factor))) | (Some((_, factor)), None) => factor,
+            (None, None) => 0.0,
+        }
+    }
 }
 
 impl Problem {
@@ -47,13 +102,22 @@ impl Problem {
             Dynamics::Slow => case.material.density,
             Dynamics::None => 0.0,
         };
+        let mesh = SheetMesh::new(
+            sheet.half_length(),
+            sheet.thickness,
+            divisions.nx,
+            divisions.ny,
+        );
+        let on_symmetry_line = |&node: &usize| NodalValue {
+            node,
+            component: 0,
+            value: 0.0,
+            factor: Factor(Vec::new()),
+        };
         Self {
-            mesh: SheetMesh::new(
-                sheet.half_length(),
-                sheet.thickness,
-                divisions.nx,
-                divisions.ny,
-            ),
+            supports: mesh.symmetry_nodes.iter().map(on_symmetry_line).collect(),
+            loads: Vec::new(),
+            mesh,
             material: VonMises::new(
                 case.material.young_modulus,
                 case.material.poisson_ratio,
@@ -64,18 +128,25 @@ impl Problem {
             quadrature: divisions.quadrature,
             contact_samples: contact_rule(divisions.contact_points_per_edge),
             contact_compliance: divisions.contact_compliance,
-            die: die(die_radius, die_shoulder_radius, sheet.half_length()),
-            punch: punch(punch_radius, sheet.thickness, loading.stroke),
-            motion: loading.motion(),
+            friction_coefficient: case.friction.coefficient,
+            friction_compliance: case.friction.compliance,
+            lower_tool: Some(Arc::new(Tool {
+                profile: die(die_radius, die_shoulder_radius, sheet.half_length()),
+                motion: Motion::Fixed,
+            })),
+            upper_tool: Some(Arc::new(Tool {
+                profile: punch(punch_radius, sheet.thickness, loading.stroke),
+                motion: Motion::Down(loading.motion()),
+            })),
             whole_sheet: sheet.force_factor(),
         }
     }
 
-    /// The tool a face of the sheet can touch, and how far it has moved at time `t` (ms), mm.
-    pub fn tool(&self, side: SurfaceSide, t: f64) -> (&Profile, [f64; 2]) {
+    /// The tool a face of the sheet can touch.
+    pub fn tool(&self, side: SurfaceSide) -> Option<&Arc<Tool>> {
         match side {
-            SurfaceSide::Bottom => (&self.die, [0.0, 0.0]),
-            SurfaceSide::Top => (&self.punch, [0.0, -self.motion.depth(t)]),
+            SurfaceSide::Bottom => self.lower_tool.as_ref(),
+            SurfaceSide::Top => self.upper_tool.as_ref(),
         }
     }
 }

@@ -21,6 +21,10 @@ pub struct ContactPointSample {
     pub pressure: f64,
     /// Signed distance to the tool, mm.
     pub gap: f64,
+    /// Friction traction on the sheet along the tool, committed, MPa.
+    pub friction: f64,
+    /// Whether friction is at its limit.
+    pub slips: bool,
     /// Whether it carries a force.
     pub active: bool,
 }
@@ -187,8 +191,8 @@ impl LocalSystem {
     pub(super) fn nodal_gaps(&self, t: f64, u: &[f64]) -> Vec<f64> {
         let thickness = self.problem.mesh.nodes[self.problem.mesh.point_a][1];
         let gap = |side: SurfaceSide, x: [f64; 2]| {
-            let (tool, shift) = self.problem.tool(side, t);
-            tool.distance([x[0] - shift[0], x[1] - shift[1]]).value
+            let tool = self.problem.tool(side);
+            tool.map_or(f64::MAX, |tool| tool.distance(x, t).value)
         };
         self.coordinates
             .iter()
@@ -213,9 +217,7 @@ impl LocalSystem {
             .enumerate()
             .map(|(point, contact)| {
                 let m = self.multiplier(point);
-                let (tool, shift) = self.problem.tool(contact.side, t);
-                let nodes = self.edge_positions(contact, u);
-                let position = contact.law.position(&nodes, tool, shift);
+                let position = contact.position(&self.edge_positions(contact, u), t);
                 let reference = [0, 1].map(|k| {
                     let at = |n: &usize| self.coordinates[*n][k];
                     contact
@@ -230,6 +232,8 @@ impl LocalSystem {
                     displacement: [position.x[0] - reference[0], position.x[1] - reference[1]],
                     pressure: self.problem.young_modulus * u[m] / contact.length,
                     gap: position.distance.value,
+                    friction: self.problem.young_modulus * contact.state.traction / contact.length,
+                    slips: contact.slips(u[m]),
                     active: u[m + 1] <= 0.0 && u[m] > 0.0,
                 }
             })

@@ -7,5 +7,5 @@ mod motion;
 mod profile;
 
 pub use benchmark::{die, punch};
-pub use motion::PunchMotion;
+pub use motion::{Motion, PunchMotion};
 pub use profile::{Distance, Piece, Profile};

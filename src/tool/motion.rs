@@ -34,10 +34,24 @@ impl PunchMotion {
     pub fn time_at_depth(&self, depth: f64) -> f64 {
         self.time_load * depth / self.stroke
     }
+}
 
-    /// Velocity of the punch at the start (downward negative), mm/ms.
-    pub fn initial_velocity(&self) -> f64 {
-        -self.stroke / self.time_load
+/// How a tool moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Motion {
+    /// Not at all.
+    Fixed,
+    /// Down and up again.
+    Down(PunchMotion),
+}
+
+impl Motion {
+    /// Displacement at time `t` (ms), mm.
+    pub fn shift(&self, t: f64) -> [f64; 2] {
+        match self {
+            Self::Fixed => [0.0, 0.0],
+            Self::Down(motion) => [0.0, -motion.depth(t)],
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use petsc_sys as sys;
 use super::SnesRef;
 use crate::{
     VectorRef,
-    error::{Error, Result, check},
+    error::{Result, check},
 };
 
 impl SnesRef {
@@ -30,15 +30,15 @@ impl SnesRef {
     /// # Errors
     /// If the layouts differ from the residual's.
     pub fn set_variable_bounds(&mut self, lower: &VectorRef, upper: &VectorRef) -> Result<()> {
-        let size = self.local_size()?;
-        if lower.local_size()? != size || upper.local_size()? != size {
-            return Err(Error::usage("the bounds need the layout of the residual"));
-        }
+        let table = self.table()?;
+        table.bounds_size.set(None); // new bounds may fit a new residual
+        self.check_layout(lower)?;
+        self.check_layout(upper)?;
         // PETSc keeps the vectors it is given. Copies keep its bounds out of everybody's reach.
         let (lower, upper) = (lower.to_owned()?, upper.to_owned()?);
         // SAFETY: live objects; PETSc counts its references to the vectors.
         check(unsafe { sys::SNESVISetVariableBounds(self.raw(), lower.raw(), upper.raw()) })?;
-        self.table()?.has_bounds.set(true);
+        table.bounds_size.set(Some(lower.local_size()?));
         Ok(())
     }
 
@@ -48,10 +48,11 @@ impl SnesRef {
     /// # Errors
     /// If there is no iterate yet.
     pub fn active_set(&self) -> Result<Vec<i32>> {
-        if !self.is_bounded()? || !self.table()?.has_bounds.get() {
+        if !self.is_bounded()? || self.table()?.bounds_size.get().is_none() {
             return Ok(Vec::new());
         }
         let (x, f) = (self.solution()?, self.function()?);
+        self.check_layout(x)?;
         let mut set = ptr::null_mut();
         let (mut count, mut indices) = (0, ptr::null());
         // SAFETY: a live solver with bounds, whose iterate and residual have the layout of the

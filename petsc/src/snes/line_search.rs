@@ -189,8 +189,19 @@ impl Step {
             }
             damping /= 2.0;
         }
-        // SAFETY: a live line search. The domain flag of the last attempt stays: the solver reads it.
-        check(unsafe { sys::SNESLineSearchSetReason(self.search, failure) })
+        // The domain flag of the last attempt stays, for the solver to read. A norm that is not a
+        // number makes it look: with the old norms it may take the last step's size for convergence.
+        let (x_norm, y_norm) = self.norms()?;
+        // SAFETY: a live line search.
+        unsafe {
+            check(sys::SNESLineSearchSetNorms(
+                self.search,
+                x_norm,
+                f64::NAN,
+                y_norm,
+            ))?;
+            check(sys::SNESLineSearchSetReason(self.search, failure))
+        }
     }
 
     /// The residual norm at the damped step, or why there is none.
@@ -226,24 +237,34 @@ impl Step {
     }
 
     fn accept(&self, damping: f64, norm: f64) -> Result<()> {
-        let (mut x_norm, mut y_norm) = (0.0, 0.0);
-        // SAFETY: live objects of this line search.
+        // SAFETY: live vectors of this line search.
+        check(unsafe { sys::VecCopy(self.w, self.x) })?;
+        let (x_norm, y_norm) = self.norms()?;
+        let step_norm = damping.abs() * y_norm;
+        // SAFETY: a live line search.
         unsafe {
-            check(sys::VecCopy(self.w, self.x))?;
-            check(sys::VecNorm(self.x, sys::NORM_2, &mut x_norm))?;
-            check(sys::VecNorm(self.y, sys::NORM_2, &mut y_norm))?;
             check(sys::SNESLineSearchSetLambda(self.search, damping))?;
-            let y_norm = damping.abs() * y_norm;
             check(sys::SNESLineSearchSetNorms(
                 self.search,
                 x_norm,
                 norm,
-                y_norm,
+                step_norm,
             ))?;
             check(sys::SNESLineSearchSetReason(
                 self.search,
                 sys::SNES_LINESEARCH_SUCCEEDED,
             ))
         }
+    }
+
+    /// The norms of the iterate and of the whole Newton step.
+    fn norms(&self) -> Result<(f64, f64)> {
+        let (mut x_norm, mut y_norm) = (0.0, 0.0);
+        // SAFETY: live vectors of this line search, one number each to write.
+        unsafe {
+            check(sys::VecNorm(self.x, sys::NORM_2, &mut x_norm))?;
+            check(sys::VecNorm(self.y, sys::NORM_2, &mut y_norm))?;
+        }
+        Ok((x_norm, y_norm))
     }
 }

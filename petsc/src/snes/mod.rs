@@ -6,6 +6,8 @@
 mod bounds;
 mod closures;
 mod line_search;
+mod tolerances;
+mod trampolines;
 
 use std::ptr;
 
@@ -15,14 +17,16 @@ use petsc_sys as sys;
 use crate::{
     KspReason, KspRef, MatrixRef, SnesReason, VectorRef,
     error::{Error, Result, check, text_of},
-    handle::petsc_object,
+    handle::{petsc_object, plain_getters, plain_setters},
     options,
     session::{c_string, keep},
 };
 
 pub use closures::ConvergenceCheck;
-pub(crate) use closures::{assemble_operator, finish_residual, snes_table};
+pub(crate) use closures::snes_table;
 pub use line_search::LineSearchInfo;
+pub use tolerances::Tolerances;
+pub(crate) use trampolines::{assemble_operator, finish_residual};
 
 petsc_object! {
     /// A nonlinear solver.
@@ -30,21 +34,6 @@ petsc_object! {
     /// A borrowed [`Snes`]: the solver inside a [`Ts`](crate::Ts), or the one that calls a closure.
     SnesRef,
     SNES, SNESDestroy
-}
-
-/// When a nonlinear solver stops.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tolerances {
-    /// The residual norm that is small enough.
-    pub absolute: f64,
-    /// The part of the first residual norm that is small enough.
-    pub relative: f64,
-    /// The part of the solution's norm below which a step is small enough.
-    pub step: f64,
-    /// The largest number of iterations.
-    pub max_iterations: i32,
-    /// The largest number of residual evaluations; negative for no limit.
-    pub max_evaluations: i32,
 }
 
 impl Snes {
@@ -70,10 +59,16 @@ impl Snes {
     /// # Errors
     /// If PETSc or a closure fails; a solver that gives up is a [`SnesReason`].
     pub fn solve(&mut self, x: &mut VectorRef) -> Result<SnesReason> {
-        // SAFETY: live objects; a null right-hand side means zero; PETSc checks the layouts and
-        // counts its reference to `x`.
-        let solved = check(unsafe { sys::SNESSolve(self.raw(), ptr::null_mut(), x.raw()) });
+        self.check_layout(x)?;
+        // PETSc keeps the vector it is given, and lends it to closures: it gets one of its own.
+        let work = x.to_owned()?;
+        let table = self.table()?;
+        table.running.set(true);
+        // SAFETY: live objects; a null right-hand side means zero; PETSc counts its reference.
+        let solved = check(unsafe { sys::SNESSolve(self.raw(), ptr::null_mut(), work.raw()) });
+        table.running.set(false);
         solved?;
+        x.copy_from(&work)?;
         self.converged_reason()
     }
 }
@@ -94,8 +89,9 @@ impl SnesRef {
     /// Sets the type, for example `newtonls` or `vinewtonrsls`.
     ///
     /// # Errors
-    /// If there is no such type.
+    /// If there is no such type, or the solver is running.
     pub fn set_type(&mut self, name: &str) -> Result<()> {
+        self.require_idle()?;
         let name = c_string(name)?;
         // SAFETY: a live solver and a C string, which PETSc copies.
         check(unsafe { sys::SNESSetType(self.raw(), name.as_ptr()) })?;
@@ -127,8 +123,9 @@ impl SnesRef {
     /// Reads the options `-snes_…`, `-ksp_…` and `-pc_…`.
     ///
     /// # Errors
-    /// If an option has an impossible value.
+    /// If an option has an impossible value, or the solver is running.
     pub fn set_from_options(&mut self) -> Result<()> {
+        self.require_idle()?;
         // SAFETY: a live solver.
         check(unsafe { sys::SNESSetFromOptions(self.raw()) })?;
         self.restore_choices()
@@ -146,100 +143,20 @@ impl SnesRef {
         options::is_given(&format!("{}{name}", self.options_prefix()?))
     }
 
-    /// When the solver stops.
-    ///
-    /// # Errors
-    /// If PETSc fails.
-    pub fn tolerances(&self) -> Result<Tolerances> {
-        let (mut absolute, mut relative, mut step) = (0.0, 0.0, 0.0);
-        let (mut max_iterations, mut max_evaluations) = (0, 0);
-        // SAFETY: a live solver and one value behind each pointer.
-        check(unsafe {
-            sys::SNESGetTolerances(
-                self.raw(),
-                &mut absolute,
-                &mut relative,
-                &mut step,
-                &mut max_iterations,
-                &mut max_evaluations,
-            )
-        })?;
-        Ok(Tolerances {
-            absolute,
-            relative,
-            step,
-            max_iterations,
-            max_evaluations,
-        })
+    plain_getters! {
+        /// The iteration at work, or the number of iterations of the last solve.
+        iteration_number, SNESGetIterationNumber => i32;
+        /// The linear iterations of the last solve.
+        linear_iterations, SNESGetLinearSolveIterations => i32;
+        /// The residual evaluations of the last solve.
+        function_evaluations, SNESGetNumberFunctionEvals => i32;
+        /// The residual norm the solver judges by: with bounds, that of the inactive unknowns.
+        function_norm, SNESGetFunctionNorm => f64;
     }
 
-    /// Sets when the solver stops.
-    ///
-    /// # Errors
-    /// If a value is impossible.
-    pub fn set_tolerances(&mut self, to: Tolerances) -> Result<()> {
-        let Tolerances {
-            absolute,
-            relative,
-            step,
-            max_iterations,
-            max_evaluations,
-        } = to;
-        // SAFETY: a live solver.
-        check(unsafe {
-            sys::SNESSetTolerances(
-                self.raw(),
-                absolute,
-                relative,
-                step,
-                max_iterations,
-                max_evaluations,
-            )
-        })
-    }
-
-    /// The iteration at work, or the number of iterations of the last solve.
-    ///
-    /// # Errors
-    /// If PETSc fails.
-    pub fn iteration_number(&self) -> Result<i32> {
-        let mut count = 0;
-        // SAFETY: a live solver, one integer to write.
-        check(unsafe { sys::SNESGetIterationNumber(self.raw(), &mut count) })?;
-        Ok(count)
-    }
-
-    /// The linear iterations of the last solve.
-    ///
-    /// # Errors
-    /// If PETSc fails.
-    pub fn linear_iterations(&self) -> Result<i32> {
-        let mut count = 0;
-        // SAFETY: a live solver, one integer to write.
-        check(unsafe { sys::SNESGetLinearSolveIterations(self.raw(), &mut count) })?;
-        Ok(count)
-    }
-
-    /// The residual evaluations of the last solve.
-    ///
-    /// # Errors
-    /// If PETSc fails.
-    pub fn function_evaluations(&self) -> Result<i32> {
-        let mut count = 0;
-        // SAFETY: a live solver, one integer to write.
-        check(unsafe { sys::SNESGetNumberFunctionEvals(self.raw(), &mut count) })?;
-        Ok(count)
-    }
-
-    /// The residual norm the solver judges by: with bounds, that of the inactive unknowns.
-    ///
-    /// # Errors
-    /// If PETSc fails.
-    pub fn function_norm(&self) -> Result<f64> {
-        let mut norm = 0.0;
-        // SAFETY: a live solver, one number to write.
-        check(unsafe { sys::SNESGetFunctionNorm(self.raw(), &mut norm) })?;
-        Ok(norm)
+    plain_setters! {
+        /// Sets how many linear solves may fail before the solver gives up.
+        set_max_linear_solve_failures, SNESSetMaxLinearSolveFailures <= i32;
     }
 
     /// Why the last solve stopped.
@@ -253,7 +170,7 @@ impl SnesRef {
         Ok(SnesReason::from_raw(reason))
     }
 
-    /// The current iterate.
+    /// The current iterate, or that of the last solve.
     ///
     /// # Errors
     /// If there is none yet.
@@ -359,15 +276,6 @@ impl SnesRef {
         check(unsafe { sys::SNESSetFunctionDomainError(self.raw()) })
     }
 
-    /// Sets how many linear solves may fail before the solver gives up.
-    ///
-    /// # Errors
-    /// If PETSc fails.
-    pub fn set_max_linear_solve_failures(&mut self, count: i32) -> Result<()> {
-        // SAFETY: a live solver.
-        check(unsafe { sys::SNESSetMaxLinearSolveFailures(self.raw(), count) })
-    }
-
     /// Makes the solver take at least one iteration even if the start is good enough.
     ///
     /// # Errors
@@ -382,9 +290,26 @@ impl SnesRef {
         check(unsafe { sys::SNESSetForceIteration(self.raw(), force) })
     }
 
-    pub(crate) fn local_size(&self) -> Result<usize> {
-        self.function()
-            .map_err(|_| Error::usage("set the residual function before"))?
-            .local_size()
+    /// The layout all vectors of this solver need: PETSc does not always check it.
+    pub(crate) fn check_layout(&self, x: &VectorRef) -> Result<()> {
+        let function = self
+            .function()
+            .map_err(|_| Error::usage("set the residual function before"))?;
+        let size = function.local_size()?;
+        let bounds = self.table()?.bounds_size.get().unwrap_or(size);
+        if x.local_size()? == size && bounds == size {
+            return Ok(());
+        }
+        Err(Error::usage(
+            "iterate, bounds and residual need the same layout",
+        ))
+    }
+
+    /// A running solver holds on to its parts.
+    pub(crate) fn require_idle(&self) -> Result<()> {
+        if self.table()?.running.get() {
+            return Err(Error::usage("the nonlinear solver is running"));
+        }
+        Ok(())
     }
 }

@@ -79,26 +79,35 @@ impl TsRef {
         })
     }
 
-    /// Tells a multi-step method that the solution has jumped: the next step is a start. For the
-    /// pre-step or post-step hook.
+    /// Tells the method that the solution has jumped: the next step is a start. For the hooks before
+    /// and after a step.
     ///
     /// # Errors
     /// If PETSc fails.
     pub fn restart_step(&mut self) -> Result<()> {
-        self.table()?.starting.set(true);
+        self.table()?.has_history.set(false);
         // SAFETY: a live object.
         check(unsafe { sys::TSRestartStep(self.raw()) })
     }
 
-    /// Before each step: the right parameters for a start, or the caller's for any other step.
-    pub(super) fn choose_params(&mut self, table: &TsTable) -> Result<()> {
-        if self.method()?.as_deref() != Some("alpha2") {
+    /// Puts the caller's parameters back after a start.
+    pub(super) fn restore_params(&mut self, table: &TsTable) -> Result<()> {
+        match table.params_after_start.take() {
+            Some(params) => self.alpha2_set_params(params),
+            None => Ok(()),
+        }
+    }
+
+    /// Sets the parameters for a start if this step is one: the first, one after a jump, or the
+    /// repetition of one that failed.
+    pub(super) fn begin_step(&mut self, table: &TsTable) -> Result<()> {
+        let step = self.step_number()?;
+        let failed_start = table.start_step.get() == Some(step);
+        if table.has_history.replace(true) && !failed_start {
             return Ok(());
         }
-        if let Some(params) = table.params_after_start.take() {
-            self.alpha2_set_params(params)?;
-        }
-        if table.starting.replace(false) {
+        table.start_step.set(Some(step));
+        if self.method()?.as_deref() == Some("alpha2") {
             table
                 .params_after_start
                 .set(Some(self.alpha2_get_params()?));
@@ -108,17 +117,10 @@ impl TsRef {
     }
 
     /// PETSc starts anew whenever it solves from step 0.
-    pub(super) fn prepare_start(&mut self) -> Result<()> {
+    pub(super) fn prepare_start(&mut self, table: &TsTable) -> Result<()> {
         if self.step_number()? == 0 {
-            self.table()?.starting.set(true);
+            table.has_history.set(false);
         }
         self.install_pre_step()
-    }
-
-    pub(super) fn end_start(&mut self) -> Result<()> {
-        match self.table()?.params_after_start.take() {
-            Some(params) => self.alpha2_set_params(params),
-            None => Ok(()),
-        }
     }
 }

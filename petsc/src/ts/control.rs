@@ -6,7 +6,8 @@ use petsc_sys as sys;
 
 use super::TsRef;
 use crate::{
-    error::{Result, check, text_of},
+    error::{Error, Result, check, text_of},
+    handle::{plain_getters, plain_setters},
     session::c_string,
 };
 
@@ -15,40 +16,12 @@ use crate::{
 pub enum ExactFinalTime {
     /// The last step goes beyond.
     StepOver,
-    /// The last step goes beyond, and the solution is interpolated (not with TSALPHA2).
-    Interpolate,
-    /// The last step is shortened.
+    /// The last step is shortened. The default here.
     MatchStep,
 }
 
-/// Defines getters and setters of one plain value.
-macro_rules! values {
-    ($($(#[$doc:meta])* $get:ident, $getter:ident => $type:ty;)*) => {
-        $($(#[$doc])*
-        ///
-        /// # Errors
-        /// If PETSc fails.
-        pub fn $get(&self) -> Result<$type> {
-            let mut value = <$type>::default();
-            // SAFETY: a live object, one value to write.
-            check(unsafe { sys::$getter(self.raw(), &mut value) })?;
-            Ok(value)
-        })*
-    };
-    (set $($(#[$doc:meta])* $set:ident, $setter:ident <= $type:ty;)*) => {
-        $($(#[$doc])*
-        ///
-        /// # Errors
-        /// If the value is impossible.
-        pub fn $set(&mut self, value: $type) -> Result<()> {
-            // SAFETY: a live object.
-            check(unsafe { sys::$setter(self.raw(), value) })
-        })*
-    };
-}
-
 impl TsRef {
-    values! {
+    plain_getters! {
         /// The time reached.
         time, TSGetTime => f64;
         /// The time before the last step.
@@ -71,8 +44,7 @@ impl TsRef {
         ksp_iterations, TSGetKSPIterations => i32;
     }
 
-    values! {
-        set
+    plain_setters! {
         /// Sets the present time.
         set_time, TSSetTime <= f64;
         /// Sets the size of the next step. For the post-step hook, or before the solve.
@@ -109,11 +81,23 @@ impl TsRef {
     pub fn set_exact_final_time(&mut self, choice: ExactFinalTime) -> Result<()> {
         let choice = match choice {
             ExactFinalTime::StepOver => sys::TS_EXACTFINALTIME_STEPOVER,
-            ExactFinalTime::Interpolate => sys::TS_EXACTFINALTIME_INTERPOLATE,
             ExactFinalTime::MatchStep => sys::TS_EXACTFINALTIME_MATCHSTEP,
         };
         // SAFETY: a live object.
         check(unsafe { sys::TSSetExactFinalTime(self.raw(), choice) })
+    }
+
+    /// TSALPHA2 cannot interpolate, and PETSc wants a second vector for it.
+    pub(super) fn require_no_interpolation(&self) -> Result<()> {
+        let mut choice = sys::TS_EXACTFINALTIME_MATCHSTEP;
+        // SAFETY: a live object, one value to write.
+        check(unsafe { sys::TSGetExactFinalTime(self.raw(), &mut choice) })?;
+        if choice == sys::TS_EXACTFINALTIME_INTERPOLATE {
+            return Err(Error::usage(
+                "-ts_exact_final_time must be stepover or matchstep",
+            ));
+        }
+        Ok(())
     }
 
     /// Makes a failed step an error instead of a reason.

@@ -9,8 +9,7 @@
 //! - TSALPHA2's start makes the initial acceleration twice too large (mended in PETSc 3.22), which
 //!   leaves first order for a spectral radius below 1. This wrapper takes the first step, and each
 //!   one after [`TsRef::restart_step`], with [`AlphaParameters::START`], which does not need it, and
-//!   puts the parameters back for the next step: second order again. Set your own parameters before
-//!   the solve.
+//!   puts the parameters back for the next step: second order again.
 //! - TSALPHA2's start makes two hidden half steps (pre- and post-stage are called for them too), and
 //!   puts the time step back when one of them fails: the reduction of the *first* step is lost, and
 //!   the same failing solve is repeated until [`TsRef::set_max_step_rejections`] ends the run. To
@@ -25,6 +24,7 @@
 mod alpha;
 mod closures;
 mod control;
+mod trampolines;
 
 use std::ptr;
 
@@ -33,7 +33,7 @@ use petsc_sys as sys;
 
 use crate::{
     SnesRef, TsReason, VectorRef,
-    error::{Result, check},
+    error::{Error, Result, check},
     handle::petsc_object,
     session::{c_string, keep},
 };
@@ -62,6 +62,11 @@ impl Ts {
             check(sys::TSCreate(comm.as_raw(), &mut raw))?;
             let ts = Self::own(raw, keep)?;
             check(sys::TSSetProblemType(raw, sys::TS_NONLINEAR))?;
+            check(sys::TSSetErrorIfStepFails(raw, sys::PETSC_FALSE))?;
+            check(sys::TSSetExactFinalTime(
+                raw,
+                sys::TS_EXACTFINALTIME_MATCHSTEP,
+            ))?;
             Ok(ts)
         }
     }
@@ -69,12 +74,20 @@ impl Ts {
     /// Integrates from the present time and solution. Collective.
     ///
     /// # Errors
-    /// If PETSc or a closure fails; an integration that gives up is a [`TsReason`].
+    /// If PETSc or a closure fails; an integration that gives up is a [`TsReason`] (unless
+    /// [`TsRef::set_error_if_step_fails`] or its option says otherwise).
     pub fn solve(&mut self) -> Result<TsReason> {
-        self.prepare_start()?;
+        self.require_no_interpolation()?;
+        let (table, snes_table) = (self.table()?, self.snes()?.table()?);
+        self.snes()?.check_layout(self.solution()?)?;
+        self.prepare_start(&table)?;
+        table.running.set(true);
+        snes_table.running.set(true);
         // SAFETY: a live object; null means the solution set before.
         let solved = check(unsafe { sys::TSSolve(self.raw(), ptr::null_mut()) });
-        self.end_start()?;
+        snes_table.running.set(false);
+        table.running.set(false);
+        self.restore_params(&table)?;
         solved?;
         self.converged_reason()
     }
@@ -94,8 +107,9 @@ impl TsRef {
     /// Reads the options `-ts_…`, and those of the nonlinear solver.
     ///
     /// # Errors
-    /// If an option has an impossible value.
+    /// If an option has an impossible value, or the integration is running.
     pub fn set_from_options(&mut self) -> Result<()> {
+        self.require_idle()?;
         // SAFETY: a live object.
         check(unsafe { sys::TSSetFromOptions(self.raw()) })?;
         self.snes_mut()?.restore_choices()
@@ -124,24 +138,41 @@ impl TsRef {
         unsafe { SnesRef::from_raw_mut(raw) }
     }
 
-    /// Sets the solution to start from (a copy is kept).
+    /// Sets the present solution (a copy is kept). In the hooks before and after a step it may change
+    /// it too: the next step is then a start, see [`TsRef::restart_step`].
     ///
     /// # Errors
-    /// If PETSc fails.
+    /// If the layout differs from the one before.
     pub fn set_solution(&mut self, u: &VectorRef) -> Result<()> {
-        let u = u.to_owned()?;
-        // SAFETY: live objects; PETSc counts its reference to the vector.
-        check(unsafe { sys::TSSetSolution(self.raw(), u.raw()) })
+        if let Ok(present) = self.solution() {
+            let raw = present.raw();
+            // SAFETY: PETSc's live vector; the integration, and with it the vector, is borrowed
+            // mutably. It is not replaced, because a running step holds on to it.
+            unsafe { VectorRef::from_raw_mut(raw) }?.copy_from(u)?;
+        } else {
+            let u = u.to_owned()?;
+            // SAFETY: live objects; PETSc counts its reference to the vector.
+            check(unsafe { sys::TSSetSolution(self.raw(), u.raw()) })?;
+        }
+        self.restart_step()
     }
 
-    /// Sets the solution and velocity to start from (copies are kept).
+    /// Sets the present solution and velocity, as [`TsRef::set_solution`] does.
     ///
     /// # Errors
-    /// If PETSc fails.
+    /// If the layout differs from the one before.
     pub fn set_solution2(&mut self, u: &VectorRef, v: &VectorRef) -> Result<()> {
+        if let Ok((_, present)) = self.solution2() {
+            let raw = present.raw();
+            // SAFETY: as in `set_solution`.
+            unsafe { VectorRef::from_raw_mut(raw) }?.copy_from(v)?;
+            return self.set_solution(u);
+        }
+        self.require_idle()?;
         let (u, v) = (u.to_owned()?, v.to_owned()?);
         // SAFETY: live objects; PETSc counts its references to the vectors.
-        check(unsafe { sys::TS2SetSolution(self.raw(), u.raw(), v.raw()) })
+        check(unsafe { sys::TS2SetSolution(self.raw(), u.raw(), v.raw()) })?;
+        self.restart_step()
     }
 
     /// The solution at the present time.
@@ -190,5 +221,13 @@ impl TsRef {
     pub fn set_converged_reason(&mut self, reason: TsReason) -> Result<()> {
         // SAFETY: a live object.
         check(unsafe { sys::TSSetConvergedReason(self.raw(), reason.to_raw()) })
+    }
+
+    /// A running integration holds on to its parts.
+    pub(crate) fn require_idle(&self) -> Result<()> {
+        if self.table()?.running.get() {
+            return Err(Error::usage("the time integration is running"));
+        }
+        Ok(())
     }
 }

@@ -1,5 +1,8 @@
 //! Runs the tests of one file on the main thread: MPI and PETSc start once per process, and belong
-//! to the thread that started them. Works under `cargo test` and under `mpirun`.
+//! to the thread that started them.
+//!
+//! `cargo test -p petsc` uses one rank. For two, let cargo start the tests by mpirun:
+//! `CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER="mpirun -n 2" cargo test -p petsc --tests`.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -26,7 +29,13 @@ pub fn run(tests: &[Test]) {
         // A test harness's own flags (`--nocapture`, ...) are no options of PETSc.
         let (flags, rest): (Vec<_>, Vec<_>) = args.into_iter().partition(|a| a.starts_with("--"));
         drop(flags);
-        let _session = petsc::Session::new(&rest).unwrap();
+        let session = petsc::Session::new(&rest).unwrap();
+        assert!(
+            session.version().starts_with("3.18."),
+            "{}",
+            session.version()
+        );
+        assert!(session.has_external_package("mumps").unwrap());
         for (name, test) in tests.iter().filter(|(name, _)| name.contains(&filter)) {
             let passed = catch_unwind(AssertUnwindSafe(|| test(&world))).is_ok();
             if world.rank() == 0 {
