@@ -11,6 +11,9 @@ use crate::case::Case;
 /// By how much a step shrinks when its solve is refused.
 pub(super) const CUT_BACK: f64 = 0.25;
 
+/// Most refused solves of one step; the least step ends them long before.
+pub(super) const MOST_REJECTIONS: i32 = 1000;
+
 /// Options that hold for every case.
 const DEFAULTS: &[(&str, &str)] = &[
     // Newton on the reduced set of a variational inequality: the primal-dual active set method.
@@ -27,7 +30,6 @@ const DEFAULTS: &[(&str, &str)] = &[
     // Step size is ours; PETSc's part is to cut back when a solve is refused.
     ("ts_adapt_type", "none"),
     ("ts_max_snes_failures", "-1"),
-    ("ts_max_reject", "1000"),
     ("ts_max_steps", "1000000"),
     ("ts_exact_final_time", "stepover"),
 ];
@@ -50,6 +52,7 @@ pub(super) fn set(case: &Case) -> petsc::Result<()> {
     for (name, value) in DEFAULTS {
         set_default(name, value)?;
     }
+    set_default("ts_max_reject", &MOST_REJECTIONS.to_string())?;
     set_default("ts_adapt_scale_solve_failed", &CUT_BACK.to_string())?;
     set_default("snes_atol", &case.stepping.newton_tolerance.to_string())?;
     set_default(

@@ -20,7 +20,7 @@ use std::time::Instant;
 use mpi::collective::SystemOperation;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, CommunicatorCollectives};
-use petsc::CallbackError;
+use petsc::{CallbackError, TsReason};
 
 pub use conclusion::conclude;
 pub use ledger::{Ledger, StepEffort};
@@ -33,7 +33,7 @@ pub use static_path::StaticPath;
 pub use step_size::StepControl;
 
 use crate::case::{self, Case, CaseError, reference_values};
-use crate::output::OutputError;
+use crate::output::{OutputError, number};
 use crate::system::{Problem, System, SystemError};
 use simulation::Simulation;
 
@@ -122,7 +122,7 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     let failure = finish.reason.is_diverged().then(|| Failure {
         time: finish.time,
         depth: motion.depth(finish.time),
-        reason: finish.reason.sentence().to_owned(),
+        reason: why(case, finish.reason, &finish.refusals),
         refusals: finish.refusals,
     });
     let mine = cpu_time::ProcessTime::now().as_duration().as_secs_f64();
@@ -140,6 +140,30 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
         factor_solver: finish.factor_solver,
         unknowns,
     }))
+}
+
+/// Why no further step could be made. The time stepper only knows that its last attempts were refused.
+fn why(case: &Case, reason: TsReason, refusals: &[Refusal]) -> String {
+    let (Some(first), Some(last)) = (refusals.first(), refusals.last()) else {
+        return reason.sentence().to_owned();
+    };
+    let tried = match refusals.len() {
+        1 => format!(
+            "the solve of the next step, {} ms long, was refused",
+            number(first.dt)
+        ),
+        count => format!(
+            "{count} solves of the next step were refused, {} down to {} ms long",
+            number(first.dt),
+            number(last.dt)
+        ),
+    };
+    if last.dt * defaults::CUT_BACK < case.stepping.dt_min {
+        let least = number(case.stepping.dt_min);
+        format!("{tried}; a shorter one would be below -dt_min {least} ms")
+    } else {
+        format!("{tried}; {}", reason.sentence())
+    }
 }
 
 /// Times to hit exactly: both ends, where reference values are compared, and where the user wants a row.

@@ -120,7 +120,7 @@ impl Simulation {
         ts.set_max_time(self.control.borrow().end())?;
         self.write_fields(0.0, &self.accepted.borrow(), None)?;
         self.recorder.borrow_mut().begin();
-        let reason = ts.solve()?;
+        let reason = self.solve(&mut ts)?;
         let factor_solver = ts.snes()?.ksp()?.factor_solver()?;
         Ok(Finish {
             reason,
@@ -130,6 +130,22 @@ impl Simulation {
             springbacks: self.springbacks.take(),
             factor_solver,
         })
+    }
+
+    /// Lets PETSc step to the end. Its second-order stepper begins with two half steps, and when they are
+    /// refused it repeats them at the same length (`TSAlpha_Restart` puts the old one back, PETSc 3.18):
+    /// the first step is shortened here.
+    fn solve(&self, ts: &mut Ts) -> Result<TsReason, RunError> {
+        let mut dt = self.control.borrow().planned();
+        loop {
+            let reason = ts.solve()?;
+            dt *= defaults::CUT_BACK;
+            if !reason.is_diverged() || self.counts.get().steps > 0 || dt < self.least_step {
+                return Ok(reason);
+            }
+            ts.set_time_step(dt)?;
+            ts.set_max_step_rejections(defaults::MOST_REJECTIONS)?;
+        }
     }
 
     /// Gives the recorder back when the time stepper is gone.
@@ -260,9 +276,9 @@ impl Simulation {
             });
         }
         self.counts.set(counts);
-        // PETSc would go on shortening the step: stop it where shorter steps are not allowed.
+        // PETSc would go on shortening the step, or repeating the first one: stop it where it must not.
         let next = ts.time_step()? * defaults::CUT_BACK;
-        if reason.is_diverged() && next < self.least_step {
+        if reason.is_diverged() && (counts.steps == 0 || next < self.least_step) {
             ts.set_max_step_rejections(0)?;
         }
         Ok(())
