@@ -5,7 +5,7 @@
 
 use std::ops::Bound;
 
-use super::kind::{Choice, Flag, Integer, Path, Real};
+use super::kind::{Choice, Flag, Integer, List, Path, Real};
 use super::model::Dynamics;
 use super::option::{Described, Group, Opt};
 use crate::element::Quadrature;
@@ -159,6 +159,12 @@ option_table! {
         name: "dt_max", unit: "ms", default: "9", group: Group::Stepping, kind: Real::positive(1e9),
         meaning: "Longest time step.",
         value: |case| case.stepping.dt_max,
+    }
+    REPORT_STROKES: List {
+        name: "report_strokes", unit: "mm", default: "1,2,5,8,10,12,15,16,18,20,22,24,26,28", group: Group::Stepping,
+        kind: List(1e5),
+        meaning: "Ways of the punch, going down, that a step ends at exactly; those beyond the stroke are left out.",
+        value: |case| case.stepping.report_strokes.clone(),
     }
     EXTRAPOLATE: Flag {
         name: "extrapolate", unit: "", default: "true", group: Group::Stepping, kind: Flag,

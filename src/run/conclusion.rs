@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use mpi::traits::Communicator;
 use petsc::Session;
 
-use super::{Failure, Outcome, RunError};
+use super::{Failure, Outcome, Refusal, RunError, unread};
 use crate::case::{self, Case, Instant, ReferenceValue, reference_values};
 use crate::output::monitor::{failed_banner, finished_banner};
 use crate::output::summary::{Certificates, Counts, Provenance, Status, Summary, Timing};
@@ -33,7 +33,12 @@ pub fn conclude(
         summary.write(outcome.recorder.folder().summary())?;
         outcome.recorder.force_figure()?;
     }
-    let mut text = format!("\n{}\n", verdicts.text());
+    let mut text = if verdicts.rows.is_empty() {
+        "\n".to_owned()
+    } else {
+        format!("\n{}\n", verdicts.text())
+    };
+    text.push_str(&unread::warnings()?);
     match &outcome.failure {
         None => text.push_str(&finished(case, &outcome, &verdicts)),
         Some(failure) => text.push_str(&failed(case, failure, &outcome)),
@@ -230,8 +235,11 @@ fn effort(case: &Case, outcome: &Outcome) -> Vec<(&'static str, String)> {
         .map(|(name, angle)| format!("{angle:.2} {name}"))
         .collect::<Vec<_>>()
         .join(", ");
-    vec![
-        ("angles", format!("deg: {angles}")),
+    let mut facts = Vec::new();
+    if !angles.is_empty() {
+        facts.push(("angles", format!("deg: {angles}")));
+    }
+    facts.extend([
         (
             "steps",
             format!(
@@ -257,7 +265,8 @@ fn effort(case: &Case, outcome: &Outcome) -> Vec<(&'static str, String)> {
             "results",
             outcome.recorder.folder().path().display().to_string(),
         ),
-    ]
+    ]);
+    facts
 }
 
 fn finished(case: &Case, outcome: &Outcome, verdicts: &VerdictTable) -> String {
@@ -269,16 +278,27 @@ fn finished(case: &Case, outcome: &Outcome, verdicts: &VerdictTable) -> String {
     finished_banner(&title, &effort(case, outcome))
 }
 
+/// The refused solves, the first and the last ones if there are many.
+fn tried(refusals: &[Refusal]) -> Vec<(&'static str, String)> {
+    const FIRST: usize = 1;
+    const LAST: usize = 3;
+    let show = |refusal: &Refusal| ("tried", refusal.to_string());
+    let hidden = refusals.len().saturating_sub(FIRST + LAST);
+    if hidden < 2 {
+        return refusals.iter().map(show).collect();
+    }
+    let mut facts: Vec<_> = refusals[..FIRST].iter().map(show).collect();
+    facts.push(("", format!("... {hidden} more ...")));
+    facts.extend(refusals[FIRST + hidden..].iter().map(show));
+    facts
+}
+
 fn failed(case: &Case, failure: &Failure, outcome: &Outcome) -> String {
     let place = format!(
         "after step {}, t = {:.4} ms, punch down by {:.4} mm",
         outcome.counts.steps, failure.time, failure.depth
     );
-    let mut facts: Vec<(&str, String)> = failure
-        .refusals
-        .iter()
-        .map(|refusal| ("tried", refusal.to_string()))
-        .collect();
+    let mut facts = tried(&failure.refusals);
     facts.push((
         "try",
         "a smaller -dt_max, more -contact_points_per_edge, a larger \

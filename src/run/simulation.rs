@@ -15,7 +15,7 @@ use super::refusal::Refusal;
 use super::springback::{Springback, springback};
 use super::step_size::StepControl;
 use super::{RunError, defaults};
-use crate::case::{Case, Dynamics, check_unused};
+use crate::case::{Case, Dynamics};
 use crate::output::StepRecord;
 use crate::system::{FieldSampler, System};
 use crate::tool::PunchMotion;
@@ -119,7 +119,7 @@ impl Simulation {
     }
 
     /// Runs to the end of the motion or until a step cannot be solved. Collective.
-    pub(super) fn run(self: &Rc<Self>, case: &Case) -> Result<Option<Finish>, RunError> {
+    pub(super) fn run(self: &Rc<Self>, case: &Case) -> Result<Finish, RunError> {
         defaults::set(case)?;
         let mut ts = Ts::new(self.system.comm())?;
         self.set_problem(&mut ts, case.loading.dynamics)?;
@@ -130,22 +130,34 @@ impl Simulation {
         ts.snes_mut()?.set_variable_bounds(&lower, &upper)?;
         ts.set_time_step(self.control.borrow().planned())?;
         ts.set_max_time(self.control.borrow().end())?;
-        if petsc::options::has("help")? {
-            return Ok(None);
-        }
-        refuse_unknown_options()?;
         self.write_fields(0.0, &self.accepted.borrow(), None)?;
         self.recorder.borrow_mut().begin();
-        let reason = ts.solve()?;
+        let reason = self.solve(&mut ts)?;
         let factor_solver = ts.snes()?.ksp()?.factor_solver()?;
-        Ok(Some(Finish {
+        Ok(Finish {
             reason,
             counts: self.counts.get(),
             refusals: self.refusals.take(),
             time: self.accepted_time.get(),
             springbacks: self.springbacks.take(),
             factor_solver,
-        }))
+        })
+    }
+
+    /// Lets PETSc step to the end. Its second-order stepper begins with two half steps, and when they are
+    /// refused it repeats them at the same length (`TSAlpha_Restart` puts the old one back, PETSc 3.18):
+    /// the first step is shortened here.
+    fn solve(&self, ts: &mut Ts) -> Result<TsReason, RunError> {
+        let mut dt = self.control.borrow().planned();
+        loop {
+            let reason = ts.solve()?;
+            dt *= defaults::CUT_BACK;
+            if !reason.is_diverged() || self.counts.get().steps > 0 || dt < self.least_step {
+                return Ok(reason);
+            }
+            ts.set_time_step(dt)?;
+            ts.set_max_step_rejections(defaults::MOST_REJECTIONS)?;
+        }
     }
 
     /// Gives the recorder back when the time stepper is gone.
@@ -336,9 +348,9 @@ impl Simulation {
             });
         }
         self.counts.set(counts);
-        // PETSc would go on shortening the step: stop it where shorter steps are not allowed.
+        // PETSc would go on shortening the step, or repeating the first one: stop it where it must not.
         let next = ts.time_step()? * defaults::CUT_BACK;
-        if reason.is_diverged() && next < self.least_step {
+        if reason.is_diverged() && (counts.steps == 0 || next < self.least_step) {
             ts.set_max_step_rejections(0)?;
         }
         Ok(())
@@ -433,16 +445,6 @@ impl Simulation {
         }
         Ok(())
     }
-}
-
-/// Everything that reads options has read them: what is left over is a slip of the pen, unless
-/// PETSc reads it later.
-fn refuse_unknown_options() -> Result<(), RunError> {
-    let (errors, _) = check_unused(&petsc::options::unused()?);
-    errors
-        .into_iter()
-        .next()
-        .map_or(Ok(()), |error| Err(error.into()))
 }
 
 /// The tangent is asked for where the residual was evaluated before: it cannot fail alone.
