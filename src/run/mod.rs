@@ -4,6 +4,7 @@
 
 mod conclusion;
 mod defaults;
+mod judgement;
 mod ledger;
 mod newton;
 mod recorder;
@@ -32,7 +33,7 @@ pub use springback::{Springback, springback};
 pub use static_path::StaticPath;
 pub use step_size::StepControl;
 
-use crate::case::{self, Case, CaseError, reference_values};
+use crate::case::{self, Case, CaseError};
 use crate::output::{OutputError, number};
 use crate::system::{Problem, System, SystemError};
 use simulation::Simulation;
@@ -170,7 +171,7 @@ fn why(case: &Case, reason: TsReason, refusals: &[Refusal]) -> String {
 fn landmarks(case: &Case) -> Result<Vec<f64>, CaseError> {
     let motion = case.loading.motion();
     let mut depths = case.stepping.report_strokes.clone();
-    for value in reference_values()? {
+    for value in case.reference_values()? {
         if let case::Instant::Travel(depth) = value.when {
             depths.push(depth);
         }

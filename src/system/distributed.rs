@@ -73,7 +73,7 @@ impl System {
         comm: SimpleCommunicator,
     ) -> petsc::Result<Self> {
         let (ranks, rank) = (comm.size() as usize, comm.rank() as usize);
-        let numbering = Numbering::new(&problem.mesh, &parts, ranks, problem.contact_samples.len());
+        let numbering = Numbering::new(&problem, &parts, ranks);
         let local = LocalSystem::new(problem, &parts, &numbering, rank);
         let template = Vector::new(&comm, numbering.row_count(rank))?;
         let scatter = Scatter::new(&template, local.rows())?;
