@@ -17,14 +17,15 @@ fn check(name: &str, ranks: usize, more: &str) {
     let history = history(&folder);
     let rows = history["t_ms"].len();
     assert!(rows > 30, "{rows} steps");
-    for row in 0..rows {
-        let value = |column: &str| history[column][row];
-        let place = format!("t = {} ms", value("t_ms"));
-        assert!(value("max_penetration_mm") <= 0.005, "{place}");
-        assert!(value("min_contact_force_N") >= -1e-6, "{place}");
-        assert!(value("balance_error").abs() <= 1e-6, "{place}");
-        assert!(value("residual_norm_mm") <= 1e-9, "{place}");
-    }
+    let all = |column: &str, holds: fn(f64) -> bool| {
+        for (t, value) in history["t_ms"].iter().zip(&history[column]) {
+            assert!(holds(*value), "{column} is {value} at t = {t} ms");
+        }
+    };
+    all("max_penetration_mm", |depth| depth <= 0.005);
+    all("min_contact_force_N", |force| force >= -1e-6);
+    all("balance_error", |error| error.abs() <= 1e-6);
+    all("residual_norm_mm", |norm| norm <= 1e-9);
 }
 
 #[test]
