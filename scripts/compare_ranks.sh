@@ -10,12 +10,11 @@ export OMPI_MCA_mpi_yield_when_idle=1
 
 cargo build --release --locked
 program=${CARGO_TARGET_DIR:-target}/release/ssnp155
-mkdir -p results
 for ranks in 1 2 3 4; do
     echo "compare: $ranks rank(s)"
+    mkdir -p "results/ranks-$ranks"
     mpirun -q -n "$ranks" "$program" "$@" -report_strokes 5,10,15 -output_every 0 \
-        -output_dir "results/ranks-$ranks" >"results-ranks-$ranks.log" || true
-    mv "results-ranks-$ranks.log" "results/ranks-$ranks/run.log"
+        -output_dir "results/ranks-$ranks" >"results/ranks-$ranks/run.log" || echo "compare: $ranks rank(s) ended with code $?"
 done
 
 python3 - <<'PYTHON'
