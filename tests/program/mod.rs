@@ -51,6 +51,8 @@ pub fn run(ranks: usize, seconds: u32, words: &[&str]) -> Ended {
         .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
         .env("OMPI_MCA_hwloc_base_binding_policy", "none")
         .env("OMPI_MCA_btl_vader_single_copy_mechanism", "none")
+        // More ranks than cores must not wait in a busy loop for those that have none.
+        .env("OMPI_MCA_mpi_yield_when_idle", "1")
         .env("OPENBLAS_NUM_THREADS", "1")
         .env("OMP_NUM_THREADS", "1");
     let output = command.output().expect("timeout and mpirun are needed");
