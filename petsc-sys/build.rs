@@ -27,6 +27,7 @@ const FUNCTIONS: &[&str] = &[
     "Mat(GetLocalSize|GetSize|GetOwnershipRange|GetRow|RestoreRow|GetInfo|Norm|Mult|MultTranspose)",
     "Mat(Copy|Scale|Shift|AXPY|GetDiagonal|CreateVecs|GetFactor|LUFactorSymbolic|LUFactorNumeric|Solve)",
     "Mat(FactorInfoInitialize|FactorGetSolverType|FactorGetError|FactorClearError)",
+    "MatCreateShell|MatShellSetOperation",
     "MatMumps(SetIcntl|GetIcntl|GetInfo|GetInfog|GetRinfog|SetCntl)",
     // Linear solvers.
     "KSP(Create|Destroy|SetOperators|SetFromOptions|SetOptionsPrefix|SetType|GetPC|SetUp|Solve|Reset)",
@@ -66,6 +67,7 @@ const VARIABLES: &[&str] = &[
 /// Types used by no listed function's signature.
 const TYPES: &[&str] = &[
     "MatOption",
+    "MatReuse",
     "SNESLineSearchReason",
     "TSExactFinalTimeOption",
 ];

@@ -59,6 +59,27 @@ impl KspRef {
         check(unsafe { sys::KSPSetOperators(self.raw(), matrix.raw(), matrix.raw()) })
     }
 
+    /// Sets the type, for example `preonly` or `gmres`.
+    ///
+    /// # Errors
+    /// If there is no such type.
+    pub fn set_type(&mut self, name: &str) -> Result<()> {
+        let name = c_string(name)?;
+        // SAFETY: a live solver and a C string, which PETSc copies.
+        check(unsafe { sys::KSPSetType(self.raw(), name.as_ptr()) })
+    }
+
+    /// Prepares for solves with the present values of the matrix: a direct solver factorises, with
+    /// the symbolic part of the last time if the pattern is the same. Collective.
+    ///
+    /// # Errors
+    /// If PETSc fails; a matrix that cannot be used is a [`KspReason`].
+    pub fn set_up(&mut self) -> Result<KspReason> {
+        // SAFETY: a live solver.
+        check(unsafe { sys::KSPSetUp(self.raw()) })?;
+        self.converged_reason()
+    }
+
     /// Makes the solver read its options with `prefix` before their names.
     ///
     /// # Errors

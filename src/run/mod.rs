@@ -5,6 +5,7 @@
 mod conclusion;
 mod defaults;
 mod ledger;
+mod linear;
 mod newton;
 mod recorder;
 mod refusal;
