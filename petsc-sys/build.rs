@@ -32,6 +32,7 @@ const FUNCTIONS: &[&str] = &[
     // Linear solvers.
     "KSP(Create|Destroy|SetOperators|SetFromOptions|SetOptionsPrefix|SetType|GetPC|SetUp|Solve|Reset)",
     "KSP(GetConvergedReason|GetIterationNumber|GetResidualNorm|SetTolerances)",
+    "PC(FactorSetMatOrderingType|RedundantGetKSP)",
     "PC(SetType|GetType|GetOperators|SetFailedReason|FactorGetMatSolverType|FactorSetMatSolverType)",
     "PCShell(SetContext|GetContext|SetSetUp|SetApply|SetName)",
     // Nonlinear solvers.

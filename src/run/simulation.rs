@@ -4,7 +4,8 @@ use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
 use petsc::{
-    CallbackError, ConvergenceCheck, Matrix, SnesReason, SnesRef, Ts, TsReason, TsRef, Vector, VectorRef,
+    CallbackError, ConvergenceCheck, Matrix, SnesReason, SnesRef, Ts, TsReason, TsRef, Vector,
+    VectorRef,
 };
 
 use super::ledger::{LEAST_FORCE, Ledger, StepEffort};

@@ -67,9 +67,16 @@ struct EliminatedPoint {
 
 impl Elimination {
     /// For one rank's share, with the pattern of its condensed entries.
-    pub fn new(local: &LocalSystem, numbering: &Numbering, rank: usize) -> (Self, CondensedPattern) {
+    pub fn new(
+        local: &LocalSystem,
+        numbering: &Numbering,
+        rank: usize,
+    ) -> (Self, CondensedPattern) {
         let mut prescribed = vec![false; 2 * local.nodes.len()];
-        local.supports.iter().for_each(|s| prescribed[s.unknown] = true);
+        local
+            .supports
+            .iter()
+            .for_each(|s| prescribed[s.unknown] = true);
         let row_of = |unknown: usize| {
             (numbering.displacement_row(local.nodes[unknown / 2]) + unknown % 2) as i32
         };
