@@ -59,7 +59,9 @@ fn every_rank_needs_an_element() {
     assert!(check_ranks(2, &case).is_ok());
     let text = check_ranks(3, &case).unwrap_err().to_string();
     assert!(
-        text.starts_with("3 MPI ranks for 2 elements (-sheet_nx 2 times -sheet_ny 1)"),
+        text.starts_with(
+            "too many MPI ranks: 3, and the mesh has -sheet_nx 2 times -sheet_ny 1 elements"
+        ),
         "{text}"
     );
 }

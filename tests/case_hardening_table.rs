@@ -17,8 +17,8 @@ fn a_malformed_table_is_refused_with_the_line_to_blame() {
     let cases = [
         ("", "table is empty"),
         ("# only a comment\n", "table is empty"),
-        ("strain,stress\n", "0 points; at least two"),
-        ("strain,stress\n1e-3,70.5\n", "1 points; at least two"),
+        ("strain,stress\n", "points: 0; at least two"),
+        ("strain,stress\n1e-3,70.5\n", "points: 1; at least two"),
         (
             "0.001,70.5\n0.1,80\n",
             "line 1: the header is '0.001,70.5' instead of strain,stress",

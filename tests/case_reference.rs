@@ -1,9 +1,10 @@
 //! The reference values in the program are those the benchmark is judged by.
 
-use ssnp155::case::{Instant, ReferenceValue, Tolerance, reference_values};
+use ssnp155::case::{Case, Instant, ReferenceValue, Tolerance};
 
 fn value(id: &str) -> ReferenceValue {
-    reference_values()
+    Case::reference()
+        .and_then(|case| case.reference_values())
         .unwrap()
         .into_iter()
         .find(|value| value.id == id)
@@ -45,7 +46,9 @@ fn code_asters_results_agree_with_the_values_taken_from_them() {
 
 #[test]
 fn every_value_has_a_source_and_a_unit() {
-    let values = reference_values().unwrap();
+    let values = Case::reference()
+        .and_then(|case| case.reference_values())
+        .unwrap();
     assert_eq!(values.len(), 8);
     assert!(
         values
@@ -53,4 +56,26 @@ fn every_value_has_a_source_and_a_unit() {
             .all(|value| !value.source.is_empty()
                 && ["mm", "N", "deg"].contains(&value.unit.as_str()))
     );
+}
+
+#[test]
+fn values_belong_to_the_case_they_were_taken_at() {
+    let count = |change: &dyn Fn(&mut Case)| {
+        let mut case = Case::reference().unwrap();
+        change(&mut case);
+        let values = case.reference_values().unwrap();
+        (
+            values.len(),
+            values.iter().any(|v| v.when == Instant::Withdrawn),
+        )
+    };
+    assert_eq!(count(&|_| ()), (8, false));
+    assert_eq!(count(&|case| case.loading.unload_fraction = 1.0), (7, true));
+    assert_eq!(
+        count(&|case| case.friction.coefficient = 0.1342),
+        (7, false)
+    );
+    assert_eq!(count(&|case| case.friction.coefficient = 0.1), (0, false));
+    assert_eq!(count(&|case| case.discretisation.nx = 85), (0, false));
+    assert_eq!(count(&|case| case.stepping.dt_max = 3.0), (8, false));
 }

@@ -182,7 +182,7 @@ fn a_point_turned_over_is_refused() {
 fn deformed_unknowns(problem: &Problem, seed: u64) -> (f64, Vec<f64>, Vec<f64>) {
     let partition = partition(&problem.mesh, 1).unwrap();
     let points = problem.contact_samples.len();
-    let numbering = Numbering::new(&problem.mesh, &partition, 1, points);
+    let numbering = Numbering::new(problem, &partition, 1);
     let mut noise = Noise::new(seed);
     let size = numbering.row_count(0);
     let mut global = vec![0.0; size];
@@ -213,14 +213,9 @@ fn assemble(
     shift: f64,
 ) -> (Vec<f64>, Vec<f64>) {
     let points = problem.contact_samples.len();
-    let one = Numbering::new(
-        &problem.mesh,
-        &vec![0; problem.mesh.elements.len()],
-        1,
-        points,
-    );
+    let one = Numbering::new(problem, &vec![0; problem.mesh.elements.len()], 1);
     let parts = partition(&problem.mesh, ranks).unwrap();
-    let many = Numbering::new(&problem.mesh, &parts, ranks, points);
+    let many = Numbering::new(problem, &parts, ranks);
     let size = one.row_count(0);
     let mut to_one = vec![0; size];
     for (m, o) in many.node_row.iter().zip(&one.node_row) {

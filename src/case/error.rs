@@ -42,6 +42,12 @@ pub enum CaseError {
         /// A further advice, or nothing.
         hint: &'static str,
     },
+    /// One of our options written with two dashes, which PETSc takes for another option.
+    #[error("option --{option} is written with one dash: -{option} value")]
+    TwoDashes {
+        /// Name without dashes.
+        option: String,
+    },
     /// A word of the command line that is neither an option nor the value of one.
     #[error(
         "argument '{argument}' is neither an option nor the value of one: options are written -name value, see -help"
@@ -152,8 +158,8 @@ pub enum CaseError {
     },
     /// More MPI ranks than elements.
     #[error(
-        "{ranks} MPI ranks for {elements} elements (-sheet_nx {nx} times -sheet_ny {ny}): every rank needs an element; \
-         start at most {elements} ranks or refine the mesh"
+        "too many MPI ranks: {ranks}, and the mesh has -sheet_nx {nx} times -sheet_ny {ny} elements; every rank needs \
+         one: give mpirun -n {elements} or less, or refine the mesh"
     )]
     TooManyRanks {
         /// Ranks of the run.

@@ -120,6 +120,44 @@ impl Kind for Integer {
     }
 }
 
+/// Finite real numbers with commas between, each 0 < number <= a greatest one; the word none means an empty list.
+pub(crate) struct List(pub(crate) f64);
+
+const EMPTY_LIST: &str = "none";
+
+impl Kind for List {
+    type Value = Vec<f64>;
+
+    fn parse(&self, text: &str) -> Result<Vec<f64>, Problem> {
+        if text == EMPTY_LIST {
+            return Ok(Vec::new());
+        }
+        let number = Real::positive(self.0);
+        text.split(',')
+            .map(|part| match part.trim() {
+                "" => Err("a number is missing between the commas"),
+                part => number.parse(part),
+            })
+            .collect()
+    }
+
+    fn show(&self, value: &Vec<f64>) -> String {
+        if value.is_empty() {
+            return EMPTY_LIST.to_owned();
+        }
+        let numbers: Vec<String> = value.iter().map(|number| show_real(*number)).collect();
+        numbers.join(",")
+    }
+
+    fn noun(&self) -> &'static str {
+        "real numbers with commas between and no spaces"
+    }
+
+    fn allowed(&self) -> String {
+        format!("0 < each <= {}, or {EMPTY_LIST}", show_real(self.0))
+    }
+}
+
 /// One of a few words.
 pub(crate) struct Choice<T: 'static>(pub(crate) &'static [(&'static str, T)]);
 

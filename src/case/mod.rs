@@ -25,5 +25,5 @@ pub use model::{
     Stepping, Tools,
 };
 pub use provenance::Difference;
-pub use reference::{Instant, ReferenceValue, Tolerance, reference_values};
+pub use reference::{Instant, ReferenceValue, Tolerance};
 pub use unused::check_unused;

@@ -177,6 +177,8 @@ pub struct Stepping {
     pub dt_min: f64,
     /// Greatest time step, ms.
     pub dt_max: f64,
+    /// Ways of the punch, going down, that a step ends at exactly, mm.
+    pub report_strokes: Vec<f64>,
     /// Whether a solve starts from extrapolated displacements.
     pub extrapolate: bool,
     /// Absolute tolerance on the norm of the scaled residual, mm.
@@ -192,6 +194,8 @@ pub struct Output {
     pub dir: String,
     /// Fields are saved every so many accepted steps; 0: at the ends of loading and unloading only.
     pub every: usize,
+    /// Whether every Newton iteration is shown.
+    pub iterations: bool,
 }
 
 impl Case {
@@ -236,6 +240,7 @@ impl Case {
                 dt_initial: table::DT_INITIAL.read(options)?,
                 dt_min: table::DT_MIN.read(options)?,
                 dt_max: table::DT_MAX.read(options)?,
+                report_strokes: table::REPORT_STROKES.read(options)?,
                 extrapolate: table::EXTRAPOLATE.read(options)?,
                 newton_tolerance: table::NEWTON_TOLERANCE.read(options)?,
                 newton_max_iterations: table::NEWTON_MAX_ITERATIONS.read(options)?,
@@ -243,6 +248,7 @@ impl Case {
             output: Output {
                 dir: table::OUTPUT_DIR.read(options)?,
                 every: table::OUTPUT_EVERY.read(options)?,
+                iterations: table::MONITOR_ITERATIONS.read(options)?,
             },
         };
         geometry::check(&case)?;

@@ -44,12 +44,4 @@ impl Case {
             .filter(|difference| difference.value != difference.reference);
         Ok(differences.collect())
     }
-
-    /// Whether physics and mesh are those of the reference case, so that the reference values apply.
-    ///
-    /// # Errors
-    /// As [`Case::differences_from_reference`].
-    pub fn is_reference(&self) -> Result<bool, CaseError> {
-        Ok(self.differences_from_reference()?.is_empty())
-    }
 }

@@ -1,8 +1,13 @@
-//! The reference values a run is compared with, from inputs/reference/values.csv, which is part of the program.
+//! The reference values a run is compared with, from tables in inputs/reference, which are part of the program.
 
 use super::error::CaseError;
+use super::model::Case;
+use super::table;
 
-const VALUES: &str = include_str!("../../inputs/reference/values.csv");
+const FRICTIONLESS: &str = include_str!("../../inputs/reference/values.csv");
+const WITH_FRICTION: &str = include_str!("../../inputs/reference/values-friction.csv");
+/// Coefficient of friction of the benchmark.
+const BENCHMARK_FRICTION: f64 = 0.1342;
 const HEADER: [&str; 7] = [
     "id",
     "quantity",
@@ -29,8 +34,12 @@ pub enum Instant {
     Travel(f64),
     /// At full stroke.
     FullStroke,
-    /// At the end of unloading.
+    /// The largest value while the punch goes down.
+    LargestWhileLoading,
+    /// At the end of unloading by a tenth of the stroke.
     EndOfUnloading,
+    /// When the punch is all the way out.
+    Withdrawn,
 }
 
 /// A value from elsewhere, with its source.
@@ -68,12 +77,41 @@ impl ReferenceValue {
     }
 }
 
-/// The reference values of the frictionless reference case.
-///
-/// # Errors
-/// None unless the program's own table is broken, which the tests exclude.
-pub fn reference_values() -> Result<Vec<ReferenceValue>, CaseError> {
-    parse(VALUES)
+impl Case {
+    /// The reference values that belong to this case: none unless geometry, material and mesh are the benchmark's, with
+    /// or without the benchmark's friction; those after unloading only for the unloading they were taken at.
+    ///
+    /// # Errors
+    /// None unless the program's own tables are broken, which the tests exclude.
+    pub fn reference_values(&self) -> Result<Vec<ReferenceValue>, CaseError> {
+        let friction = self.friction.coefficient;
+        let unloading = [table::UNLOAD_FRACTION.name, table::TIME_UNLOAD.name];
+        let (mut same_model, mut same_unloading) = (true, true);
+        for difference in self.differences_from_reference()? {
+            if unloading.contains(&difference.option) {
+                same_unloading = false;
+            } else if difference.option != table::FRICTION_COEFFICIENT.name
+                || friction != BENCHMARK_FRICTION
+            {
+                same_model = false;
+            }
+        }
+        if !same_model {
+            return Ok(Vec::new());
+        }
+        let withdrawn = self.loading.unload_fraction == 1.0;
+        let mut values = parse(if friction == 0.0 {
+            FRICTIONLESS
+        } else {
+            WITH_FRICTION
+        })?;
+        values.retain(|value| match value.when {
+            Instant::Travel(_) | Instant::FullStroke | Instant::LargestWhileLoading => true,
+            Instant::EndOfUnloading => same_unloading,
+            Instant::Withdrawn => withdrawn,
+        });
+        Ok(values)
+    }
 }
 
 fn parse(text: &str) -> Result<Vec<ReferenceValue>, CaseError> {
@@ -136,11 +174,14 @@ fn parse_row(record: &csv::StringRecord) -> Result<ReferenceValue, String> {
         when: match when {
             "full stroke" => Instant::FullStroke,
             "end of unloading" => Instant::EndOfUnloading,
+            "largest while loading" => Instant::LargestWhileLoading,
+            "tools withdrawn" => Instant::Withdrawn,
             _ => match when.strip_prefix("d =") {
                 Some(travel) => Instant::Travel(positive(travel.trim())?),
                 None => {
                     return Err(format!(
-                        "'{when}' is none of: d = number, full stroke, end of unloading"
+                        "'{when}' is none of: d = number, full stroke, largest while loading, end of unloading, \
+                         tools withdrawn"
                     ));
                 }
             },

@@ -5,7 +5,7 @@
 
 use std::ops::Bound;
 
-use super::kind::{Choice, Flag, Integer, Path, Real};
+use super::kind::{Choice, Flag, Integer, List, Path, Real};
 use super::model::Dynamics;
 use super::option::{Described, Group, Opt};
 use crate::element::Quadrature;
@@ -160,6 +160,12 @@ option_table! {
         meaning: "Longest time step.",
         value: |case| case.stepping.dt_max,
     }
+    REPORT_STROKES: List {
+        name: "report_strokes", unit: "mm", default: "1,2,5,8,10,12,15,16,18,20,22,24,26,28", group: Group::Stepping,
+        kind: List(1e5),
+        meaning: "Ways of the punch, going down, that a step ends at exactly; those beyond the stroke are left out.",
+        value: |case| case.stepping.report_strokes.clone(),
+    }
     EXTRAPOLATE: Flag {
         name: "extrapolate", unit: "", default: "true", group: Group::Stepping, kind: Flag,
         meaning: "Start each Newton solve from the displacements extrapolated from the last step.",
@@ -174,6 +180,11 @@ option_table! {
         name: "newton_max_iterations", unit: "", default: "30", group: Group::Stepping, kind: Integer(1, 1000),
         meaning: "A solve that needs more iterations is refused and done again with a shorter step.",
         value: |case| case.stepping.newton_max_iterations,
+    }
+    MONITOR_ITERATIONS: Flag {
+        name: "monitor_iterations", unit: "", default: "false", group: Group::Output, kind: Flag,
+        meaning: "Shows every Newton iteration: residual norm, points in contact and how many of them changed.",
+        value: |case| case.output.iterations,
     }
     OUTPUT_DIR: Path {
         name: "output_dir", unit: "", default: "results", group: Group::Output, kind: Path,

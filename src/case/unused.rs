@@ -20,6 +20,7 @@ const PETSC_NAMES: &[&str] = &[
     "ao_",
     "log_",
     "sub_",
+    "condensed_",
     "options_",
     "viewer_",
     "draw_",
@@ -82,6 +83,12 @@ pub fn check_unused(unused: &[(String, Option<String>)]) -> (Vec<CaseError>, Vec
         let known = TABLE
             .iter()
             .any(|ours| ours.name().eq_ignore_ascii_case(given));
+        if known && option.starts_with('-') {
+            errors.push(CaseError::TwoDashes {
+                option: given.to_owned(),
+            });
+            continue;
+        }
         let petsc = PETSC_NAMES.iter().any(|start| name.starts_with(start));
         let nearest = nearest(&name);
         if known || petsc && nearest.similarity < NEAR {

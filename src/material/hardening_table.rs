@@ -93,7 +93,7 @@ pub(crate) fn plastic_points(rows: &[Row], young: f64) -> Result<Vec<(f64, f64)>
         return Err((
             None,
             format!(
-                "{} points; at least two are needed to make a curve",
+                "points: {}; at least two are needed to make a curve",
                 rows.len()
             ),
         ));

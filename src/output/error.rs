@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
 pub enum OutputError {
     /// The output folder does not exist and could not be made.
-    #[error("cannot create the output folder {}: {reason}", path.display())]
+    #[error("cannot create the output folder {}: {reason}; give another one with -output_dir", path.display())]
     CannotCreateFolder {
         /// The folder asked for.
         path: PathBuf,
@@ -16,13 +16,13 @@ pub enum OutputError {
         reason: String,
     },
     /// Something that is not a folder has the name of the output folder.
-    #[error("the output folder {} is a file, not a folder: choose another name or move the file away", path.display())]
+    #[error("the output folder {} is a file, not a folder; give another one with -output_dir, or move the file away", path.display())]
     NotAFolder {
         /// The folder asked for.
         path: PathBuf,
     },
     /// The folder exists, but no file can be made in it.
-    #[error("the output folder {} is not writable: {reason}", path.display())]
+    #[error("the output folder {} takes no files: {reason}; give another one with -output_dir", path.display())]
     NotWritable {
         /// The folder asked for.
         path: PathBuf,

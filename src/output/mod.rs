@@ -28,6 +28,7 @@ pub use fields::{ContactFile, ContactSample, FieldSample, SheetFile, SheetPart, 
 pub use folder::OutputDir;
 pub use history::History;
 pub use monitor::Monitor;
+pub(crate) use number::number;
 pub use record::StepRecord;
 pub use summary::Summary;
 pub use verdict::{Tolerance, Verdict, VerdictRow, VerdictTable};

@@ -5,16 +5,13 @@ use std::collections::BTreeMap;
 use mpi::traits::Communicator;
 use petsc::Session;
 
-use super::{Failure, Outcome, RunError};
-use crate::case::{self, Case, Instant, ReferenceValue, reference_values};
+use super::judgement::{BALANCE_LIMIT, PULL_LIMIT, judge};
+use super::{Failure, Outcome, Refusal, RunError, unread};
+use crate::case::Case;
+use crate::output::VerdictTable;
 use crate::output::monitor::{failed_banner, finished_banner};
+use crate::output::number;
 use crate::output::summary::{Certificates, Counts, Provenance, Status, Summary, Timing};
-use crate::output::{StepRecord, Tolerance, VerdictRow, VerdictTable};
-
-/// Largest share by which punch force may differ from die force and inertia.
-const BALANCE_LIMIT: f64 = 1e-6;
-/// Largest pull of a contact point that is still rounding, N.
-const PULL_LIMIT: f64 = 1e-6;
 
 /// Judges, writes and shows what came out; tells whether the run finished and all verdicts hold.
 /// Collective.
@@ -33,104 +30,18 @@ pub fn conclude(
         summary.write(outcome.recorder.folder().summary())?;
         outcome.recorder.force_figure()?;
     }
-    let mut text = format!("\n{}\n", verdicts.text());
+    let mut text = if verdicts.rows.is_empty() {
+        "\n".to_owned()
+    } else {
+        format!("\n{}\n", verdicts.text())
+    };
+    text.push_str(&unread::warnings()?);
     match &outcome.failure {
         None => text.push_str(&finished(case, &outcome, &verdicts)),
         Some(failure) => text.push_str(&failed(case, failure, &outcome)),
     }
     outcome.recorder.show(&text);
     Ok(outcome.failure.is_none() && verdicts.failures() == 0)
-}
-
-/// The certificate's limits for every run that got anywhere, and the reference values where the
-/// case is the one they belong to.
-fn judge(case: &Case, records: &[StepRecord], finished: bool) -> Result<VerdictTable, RunError> {
-    let mut table = VerdictTable::default();
-    if finished && case.is_reference()? {
-        for value in reference_values()? {
-            table.rows.push(VerdictRow::new(
-                format!("{}, {}", value.quantity, when(&value)),
-                computed(case, records, &value),
-                value.value,
-                match value.tolerance {
-                    case::Tolerance::Absolute(distance) => Tolerance::Absolute(distance),
-                    case::Tolerance::Relative(share) => Tolerance::Relative(share),
-                },
-                value.unit,
-                value.source,
-            ));
-        }
-    }
-    if records.is_empty() {
-        return Ok(table);
-    }
-    let worst = |badness: fn(&StepRecord) -> f64| {
-        // NaN wins: it must not pass as small.
-        records
-            .iter()
-            .map(badness)
-            .fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a })
-    };
-    let mut limit = |quantity: &str, value: f64, bound: f64, unit: &str| {
-        let source = "certificate of every step";
-        table.rows.push(VerdictRow::new(
-            quantity,
-            value,
-            bound,
-            Tolerance::AtMost,
-            unit,
-            source,
-        ));
-    };
-    let penetration = worst(|r| r.max_penetration_mm);
-    limit(
-        "deepest penetration",
-        penetration,
-        case.discretisation.penetration_limit,
-        "mm",
-    );
-    limit(
-        "strongest pull of a contact point",
-        worst(|r| -r.min_contact_force_N),
-        PULL_LIMIT,
-        "N",
-    );
-    let imbalance = worst(|r| r.balance_error.abs());
-    limit(
-        "punch force less die force and inertia",
-        imbalance,
-        BALANCE_LIMIT,
-        "1",
-    );
-    Ok(table)
-}
-
-fn when(value: &ReferenceValue) -> String {
-    match value.when {
-        Instant::Travel(depth) => format!("d = {depth} mm"),
-        Instant::FullStroke => "full stroke".to_owned(),
-        Instant::EndOfUnloading => "end".to_owned(),
-    }
-}
-
-/// Our value for a reference value; NaN, which never holds, if there is none.
-fn computed(case: &Case, records: &[StepRecord], value: &ReferenceValue) -> f64 {
-    let motion = case.loading.motion();
-    let time = match value.when {
-        Instant::Travel(depth) => motion.time_at_depth(depth),
-        Instant::FullStroke => motion.time_load,
-        Instant::EndOfUnloading => motion.end(),
-    };
-    let record = records
-        .iter()
-        .find(|record| (record.t_ms - time).abs() < 1e-6);
-    record.map_or(f64::NAN, |record| match value.id.as_str() {
-        id if id.starts_with("dy_a_punch") => record.dy_A_punch_mm,
-        id if id.starts_with("dy_a_sheet") => record.dy_A_sheet_mm,
-        id if id.starts_with("force") => record.force_N,
-        id if id.starts_with("angle") => record.angle_deg,
-        _ => f64::NAN,
-    })
 }
 
 fn summarise(
@@ -168,7 +79,7 @@ fn summarise(
                 text("penetration_mm"),
                 case.discretisation.penetration_limit,
             ),
-            (text("pull_N"), PULL_LIMIT),
+            (text("pull"), PULL_LIMIT),
             (text("balance"), BALANCE_LIMIT),
         ]),
         worst: certificates.worst(),
@@ -216,7 +127,7 @@ fn angles(case: &Case, outcome: &Outcome) -> Vec<(String, f64)> {
         angles.push(("end of the motion".to_owned(), record.angle_deg));
     }
     for springback in &outcome.springbacks {
-        let depth = motion.depth(springback.t_ms);
+        let depth = number(motion.depth(springback.t_ms));
         let name = format!("tools vanish at {depth} mm");
         angles.push((name, springback.released_angle_deg));
     }
@@ -230,8 +141,11 @@ fn effort(case: &Case, outcome: &Outcome) -> Vec<(&'static str, String)> {
         .map(|(name, angle)| format!("{angle:.2} {name}"))
         .collect::<Vec<_>>()
         .join(", ");
-    vec![
-        ("angles", format!("deg: {angles}")),
+    let mut facts = Vec::new();
+    if !angles.is_empty() {
+        facts.push(("angles", format!("deg: {angles}")));
+    }
+    facts.extend([
         (
             "steps",
             format!(
@@ -257,7 +171,8 @@ fn effort(case: &Case, outcome: &Outcome) -> Vec<(&'static str, String)> {
             "results",
             outcome.recorder.folder().path().display().to_string(),
         ),
-    ]
+    ]);
+    facts
 }
 
 fn finished(case: &Case, outcome: &Outcome, verdicts: &VerdictTable) -> String {
@@ -269,16 +184,27 @@ fn finished(case: &Case, outcome: &Outcome, verdicts: &VerdictTable) -> String {
     finished_banner(&title, &effort(case, outcome))
 }
 
+/// The refused solves, the first and the last ones if there are many.
+fn tried(refusals: &[Refusal]) -> Vec<(&'static str, String)> {
+    const FIRST: usize = 1;
+    const LAST: usize = 3;
+    let show = |refusal: &Refusal| ("tried", refusal.to_string());
+    let hidden = refusals.len().saturating_sub(FIRST + LAST);
+    if hidden < 2 {
+        return refusals.iter().map(show).collect();
+    }
+    let mut facts: Vec<_> = refusals[..FIRST].iter().map(show).collect();
+    facts.push(("", format!("... {hidden} more ...")));
+    facts.extend(refusals[FIRST + hidden..].iter().map(show));
+    facts
+}
+
 fn failed(case: &Case, failure: &Failure, outcome: &Outcome) -> String {
     let place = format!(
         "after step {}, t = {:.4} ms, punch down by {:.4} mm",
         outcome.counts.steps, failure.time, failure.depth
     );
-    let mut facts: Vec<(&str, String)> = failure
-        .refusals
-        .iter()
-        .map(|refusal| ("tried", refusal.to_string()))
-        .collect();
+    let mut facts = tried(&failure.refusals);
     facts.push((
         "try",
         "a smaller -dt_max, more -contact_points_per_edge, a larger \

@@ -1,11 +1,18 @@
 //! PETSc options this program chooses; whatever the user gives goes before them.
 
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+use petsc::Ts;
 use petsc::options::set_default;
 
+use super::RunError;
 use crate::case::Case;
 
 /// By how much a step shrinks when its solve is refused.
 pub(super) const CUT_BACK: f64 = 0.25;
+
+/// Most refused solves of one step; the least step ends them long before.
+pub(super) const MOST_REJECTIONS: i32 = 1000;
 
 /// Options that hold for every case.
 const DEFAULTS: &[(&str, &str)] = &[
@@ -15,24 +22,32 @@ const DEFAULTS: &[(&str, &str)] = &[
     ("snes_rtol", "0"),
     ("snes_stol", "0"),
     ("snes_divergence_tolerance", "-1"),
-    ("ksp_type", "preonly"),
-    ("pc_type", "lu"),
-    ("pc_factor_mat_solver_type", "mumps"),
-    // In two dimensions approximate minimum degree orders fastest and fills hardly more.
-    ("mat_mumps_icntl_7", "0"),
     // Step size is ours; PETSc's part is to cut back when a solve is refused.
     ("ts_adapt_type", "none"),
     ("ts_max_snes_failures", "-1"),
-    ("ts_max_reject", "1000"),
     ("ts_max_steps", "1000000"),
     ("ts_exact_final_time", "stepover"),
 ];
+
+/// Lets PETSc's time stepper and the solvers below it print their help. Collective.
+pub(super) fn show_help(case: &Case, comm: &SimpleCommunicator) -> Result<(), RunError> {
+    set(case)?;
+    Ok(Ts::new(&comm.duplicate())?.set_from_options()?)
+}
+
+/// Whether the option has the value that this program gave it.
+pub(super) fn is_default(name: &str, value: Option<&str>) -> bool {
+    DEFAULTS
+        .iter()
+        .any(|(ours, default)| *ours == name && value == Some(*default))
+}
 
 /// Puts the defaults into PETSc's option database.
 pub(super) fn set(case: &Case) -> petsc::Result<()> {
     for (name, value) in DEFAULTS {
         set_default(name, value)?;
     }
+    set_default("ts_max_reject", &MOST_REJECTIONS.to_string())?;
     set_default("ts_adapt_scale_solve_failed", &CUT_BACK.to_string())?;
     set_default("snes_atol", &case.stepping.newton_tolerance.to_string())?;
     set_default(

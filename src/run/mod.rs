@@ -4,7 +4,9 @@
 
 mod conclusion;
 mod defaults;
+mod judgement;
 mod ledger;
+mod linear;
 mod newton;
 mod recorder;
 mod refusal;
@@ -12,6 +14,7 @@ mod simulation;
 mod springback;
 mod static_path;
 mod step_size;
+mod unread;
 
 use std::rc::Rc;
 use std::time::Instant;
@@ -19,7 +22,7 @@ use std::time::Instant;
 use mpi::collective::SystemOperation;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, CommunicatorCollectives};
-use petsc::CallbackError;
+use petsc::{CallbackError, TsReason};
 
 pub use conclusion::conclude;
 pub use ledger::{Ledger, StepEffort};
@@ -31,8 +34,8 @@ pub use springback::{Springback, springback};
 pub use static_path::StaticPath;
 pub use step_size::StepControl;
 
-use crate::case::{self, Case, CaseError, reference_values};
-use crate::output::OutputError;
+use crate::case::{self, Case, CaseError};
+use crate::output::{OutputError, number};
 use crate::system::{Problem, System, SystemError};
 use simulation::Simulation;
 
@@ -105,6 +108,11 @@ impl Failure {
 /// If the run cannot be set up, or PETSc or a file fails on the way.
 pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome>, RunError> {
     let clock = Instant::now();
+    // Before any file is made: neither a slip of the pen nor a question may cost an earlier run's results.
+    if petsc::options::has("help")? {
+        return defaults::show_help(case, comm).map(|()| None);
+    }
+    unread::refuse_slips()?;
     let problem = Problem::new(case);
     let motion = case.loading.motion();
     let landmarks = landmarks(case)?;
@@ -112,13 +120,11 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     let unknowns = system.unknown_count();
     let recorder = Recorder::new(case, &system)?;
     let simulation = Rc::new(Simulation::new(case, system, recorder, landmarks)?);
-    let Some(finish) = simulation.run(case)? else {
-        return Ok(None);
-    };
+    let finish = simulation.run(case)?;
     let failure = finish.reason.is_diverged().then(|| Failure {
         time: finish.time,
         depth: motion.depth(finish.time),
-        reason: finish.reason.sentence().to_owned(),
+        reason: why(case, finish.reason, &finish.refusals),
         refusals: finish.refusals,
     });
     let mine = cpu_time::ProcessTime::now().as_duration().as_secs_f64();
@@ -138,17 +144,45 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     }))
 }
 
-/// Times to hit exactly: both ends, and where reference values are compared.
+/// Why no further step could be made. The time stepper only knows that its last attempts were refused.
+fn why(case: &Case, reason: TsReason, refusals: &[Refusal]) -> String {
+    let (Some(first), Some(last)) = (refusals.first(), refusals.last()) else {
+        return reason.sentence().to_owned();
+    };
+    let tried = match refusals.len() {
+        1 => format!(
+            "the solve of the next step, {} ms long, was refused",
+            number(first.dt)
+        ),
+        count => format!(
+            "{count} solves of the next step were refused, {} down to {} ms long",
+            number(first.dt),
+            number(last.dt)
+        ),
+    };
+    if last.dt * defaults::CUT_BACK < case.stepping.dt_min {
+        let least = number(case.stepping.dt_min);
+        format!("{tried}; a shorter one would be below -dt_min {least} ms")
+    } else {
+        format!("{tried}; {}", reason.sentence())
+    }
+}
+
+/// Times to hit exactly: both ends, where reference values are compared, and where the user wants a row.
 fn landmarks(case: &Case) -> Result<Vec<f64>, CaseError> {
     let motion = case.loading.motion();
-    let mut times = vec![motion.time_load, motion.end()];
-    for value in reference_values()? {
-        if let case::Instant::Travel(depth) = value.when
-            && depth < motion.stroke
-        {
-            times.push(motion.time_at_depth(depth));
+    let mut depths = case.stepping.report_strokes.clone();
+    for value in case.reference_values()? {
+        if let case::Instant::Travel(depth) = value.when {
+            depths.push(depth);
         }
     }
+    depths.retain(|&depth| depth < motion.stroke);
+    let mut times: Vec<f64> = depths
+        .iter()
+        .map(|&depth| motion.time_at_depth(depth))
+        .collect();
+    times.extend([motion.time_load, motion.end()]);
     times.sort_by(f64::total_cmp);
     times.dedup();
     Ok(times)

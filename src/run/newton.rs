@@ -46,6 +46,22 @@ impl Damping {
     }
 }
 
+/// A correction may move the sheet by this share of what the step in time is expected to.
+const CORRECTION_SHARE: f64 = 0.3;
+
+/// Length of a Newton step whose largest displacement is `correction` (mm), in a time step expected to
+/// move the sheet by `expected` (mm). The first step of a solve is free.
+///
+/// When all points slip, the arm of the sheet is almost a mechanism: a full Newton step throws it far
+/// off, a hundred points touch down, and the solve is lost.
+pub(super) fn limited_length(iteration: usize, correction: f64, expected: f64) -> f64 {
+    if iteration == 0 || correction <= CORRECTION_SHARE * expected {
+        1.0
+    } else {
+        CORRECTION_SHARE * expected / correction
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

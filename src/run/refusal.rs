@@ -4,6 +4,7 @@ use std::fmt;
 
 use petsc::SnesReason;
 
+use crate::output::number;
 use crate::system::ElementFailure;
 
 /// A Newton solve that did not converge.
@@ -27,11 +28,12 @@ impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "step to {:.4} ms (dt {:.3e} ms): {} after {} iterations",
+            "step to {:.4} ms (dt {} ms): {} after {} iteration{}",
             self.time,
-            self.dt,
+            number(self.dt),
             self.reason.sentence(),
-            self.iterations
+            self.iterations,
+            if self.iterations == 1 { "" } else { "s" },
         )?;
         if let (Some(first), Some(last)) = (self.norms.first(), self.norms.last()) {
             write!(f, ", residual from {first:.1e} to {last:.1e} mm")?;

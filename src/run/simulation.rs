@@ -4,17 +4,19 @@ use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
 use petsc::{
-    CallbackError, ConvergenceCheck, SnesReason, SnesRef, Ts, TsReason, TsRef, Vector, VectorRef,
+    CallbackError, ConvergenceCheck, LineSearchInfo, Matrix, SnesReason, SnesRef, Ts, TsReason,
+    TsRef, Vector, VectorRef,
 };
 
 use super::ledger::{LEAST_FORCE, Ledger, StepEffort};
-use super::newton::Damping;
+use super::linear::LinearSolve;
+use super::newton::{Damping, limited_length};
 use super::recorder::Recorder;
 use super::refusal::Refusal;
 use super::springback::{Springback, springback};
 use super::step_size::StepControl;
 use super::{RunError, defaults};
-use crate::case::{Case, Dynamics, check_unused};
+use crate::case::{Case, Dynamics};
 use crate::output::StepRecord;
 use crate::system::{FieldSampler, System};
 use crate::tool::PunchMotion;
@@ -39,8 +41,15 @@ pub(super) struct Simulation {
     accepted: RefCell<Vector>,
     accepted_time: Cell<f64>,
     extrapolate: bool,
+    show_iterations: bool,
+    /// Contact status of this rank's points at the last iteration shown.
+    status: RefCell<Vec<u8>>,
     /// Length of the step being tried, ms.
     attempted: Cell<f64>,
+    /// Time it is to reach, ms.
+    attempted_time: Cell<f64>,
+    /// Largest displacement expected of it, mm.
+    expected: Cell<f64>,
     least_step: f64,
     motion: PunchMotion,
     /// Solves of the present step so far.
@@ -96,7 +105,11 @@ impl Simulation {
             accepted: RefCell::new(accepted),
             accepted_time: Cell::new(0.0),
             extrapolate: stepping.extrapolate,
+            show_iterations: case.output.iterations,
+            status: RefCell::default(),
             attempted: Cell::new(0.0),
+            attempted_time: Cell::new(0.0),
+            expected: Cell::new(0.0),
             least_step: stepping.dt_min,
             motion: case.loading.motion(),
             refusals: RefCell::default(),
@@ -107,33 +120,47 @@ impl Simulation {
     }
 
     /// Runs to the end of the motion or until a step cannot be solved. Collective.
-    pub(super) fn run(self: &Rc<Self>, case: &Case) -> Result<Option<Finish>, RunError> {
+    pub(super) fn run(self: &Rc<Self>, case: &Case) -> Result<Finish, RunError> {
         defaults::set(case)?;
         let mut ts = Ts::new(self.system.comm())?;
-        self.set_problem(&mut ts, case.loading.dynamics)?;
+        let linear = LinearSolve::chosen(&self.system)?;
+        self.set_problem(&mut ts, case.loading.dynamics, linear.matrix(&self.system)?)?;
         self.set_hooks(&mut ts)?;
         let (lower, upper) = self.system.bounds()?;
         ts.snes_mut()?.set_type("vinewtonrsls")?;
+        linear.install(ts.snes_mut()?)?;
         ts.set_from_options()?;
         ts.snes_mut()?.set_variable_bounds(&lower, &upper)?;
         ts.set_time_step(self.control.borrow().planned())?;
         ts.set_max_time(self.control.borrow().end())?;
-        if petsc::options::has("help")? {
-            return Ok(None);
-        }
-        refuse_unknown_options()?;
         self.write_fields(0.0, &self.accepted.borrow(), None)?;
         self.recorder.borrow_mut().begin();
-        let reason = ts.solve()?;
-        let factor_solver = ts.snes()?.ksp()?.factor_solver()?;
-        Ok(Some(Finish {
+        let reason = self.solve(&mut ts)?;
+        let factor_solver = linear.factor_solver(ts.snes()?)?;
+        Ok(Finish {
             reason,
             counts: self.counts.get(),
             refusals: self.refusals.take(),
             time: self.accepted_time.get(),
             springbacks: self.springbacks.take(),
             factor_solver,
-        }))
+        })
+    }
+
+    /// Lets PETSc step to the end. Its second-order stepper begins with two half steps, and when they are
+    /// refused it repeats them at the same length (`TSAlpha_Restart` puts the old one back, PETSc 3.18):
+    /// the first step is shortened here.
+    fn solve(&self, ts: &mut Ts) -> Result<TsReason, RunError> {
+        let mut dt = self.control.borrow().planned();
+        loop {
+            let reason = ts.solve()?;
+            dt *= defaults::CUT_BACK;
+            if !reason.is_diverged() || self.counts.get().steps > 0 || dt < self.least_step {
+                return Ok(reason);
+            }
+            ts.set_time_step(dt)?;
+            ts.set_max_step_rejections(defaults::MOST_REJECTIONS)?;
+        }
     }
 
     /// Gives the recorder back when the time stepper is gone.
@@ -141,9 +168,13 @@ impl Simulation {
         self.recorder.into_inner()
     }
 
-    fn set_problem(self: &Rc<Self>, ts: &mut Ts, dynamics: Dynamics) -> Result<(), RunError> {
+    fn set_problem(
+        self: &Rc<Self>,
+        ts: &mut Ts,
+        dynamics: Dynamics,
+        matrix: Matrix,
+    ) -> Result<(), RunError> {
         let start = self.accepted.borrow();
-        let matrix = self.system.matrix()?;
         let (for_residual, for_jacobian) = (Rc::clone(&self.system), Rc::clone(&self.system));
         match dynamics {
             Dynamics::Slow => {
@@ -181,7 +212,7 @@ impl Simulation {
 
     fn set_hooks(self: &Rc<Self>, ts: &mut Ts) -> Result<(), RunError> {
         let this = Rc::clone(self);
-        ts.set_pre_stage(move |ts, _| this.before_solve(ts))?;
+        ts.set_pre_stage(move |ts, t| this.before_solve(ts, t))?;
         let this = Rc::clone(self);
         ts.set_post_stage(move |ts, t, _| this.after_solve(ts, t))?;
         let this = Rc::clone(self);
@@ -189,16 +220,16 @@ impl Simulation {
         let snes = ts.snes_mut()?;
         let this = Rc::clone(self);
         snes.set_convergence_test(move |snes, check| this.balanced(snes, check))?;
+        if self.show_iterations {
+            let this = Rc::clone(self);
+            snes.set_monitor(move |snes, iteration, norm| {
+                this.show_iteration(snes, iteration, norm)
+            })?;
+        }
         let this = Rc::clone(self);
         snes.set_initial_guess(move |guess| this.extrapolate(guess))?;
         let this = Rc::clone(self);
-        snes.set_shell_line_search(move |info| {
-            let iteration = info.iteration.unsigned_abs() as usize;
-            Ok(this
-                .damping
-                .borrow_mut()
-                .step_length(iteration, info.residual_norm))
-        })?;
+        snes.set_shell_line_search(move |info| this.step_length(info))?;
         Ok(())
     }
 
@@ -221,9 +252,37 @@ impl Simulation {
         })
     }
 
-    fn before_solve(&self, ts: &mut TsRef) -> Result<(), CallbackError> {
-        self.attempted.set(ts.time_step()?);
+    fn before_solve(&self, ts: &mut TsRef, t: f64) -> Result<(), CallbackError> {
+        self.attempted_time.set(t);
+        let dt = ts.time_step()?;
+        self.attempted.set(dt);
+        self.expected.set(self.expected_displacement(t, dt)?);
         Ok(())
+    }
+
+    /// Length of a Newton step: damped where the solve stagnates, and limited where it would carry the
+    /// sheet much farther than the step in time does.
+    fn step_length(&self, info: &LineSearchInfo<'_>) -> Result<f64, CallbackError> {
+        let iteration = info.iteration.unsigned_abs() as usize;
+        let damped = self
+            .damping
+            .borrow_mut()
+            .step_length(iteration, info.residual_norm);
+        let correction = self.system.largest_displacement(info.step)?;
+        Ok(damped.min(limited_length(iteration, correction, self.expected.get())))
+    }
+
+    /// The largest displacement that a step of length `dt` (ms) is expected to bring, mm: that of the
+    /// punch, or of the sheet if it moved faster in the last step.
+    fn expected_displacement(&self, t: f64, dt: f64) -> Result<f64, CallbackError> {
+        let punch = (self.motion.depth(t) - self.motion.depth(t - dt)).abs();
+        let before = self.before.borrow();
+        let Some((before, last_dt)) = before.as_ref() else {
+            return Ok(punch);
+        };
+        let mut motion = self.accepted.borrow().to_owned()?;
+        motion.axpy(-1.0, before)?;
+        Ok(punch.max(self.system.largest_displacement(&motion)? * dt / last_dt))
     }
 
     /// Moves the start of a solve on along the last step: displacements only, with multipliers, gaps
@@ -246,6 +305,38 @@ impl Simulation {
         Ok(())
     }
 
+    fn show_iteration(
+        &self,
+        snes: &SnesRef,
+        iteration: i32,
+        norm: f64,
+    ) -> Result<(), CallbackError> {
+        let now = self
+            .system
+            .contact_status(self.attempted_time.get(), snes.solution()?)?;
+        let mut before = self.status.borrow_mut();
+        let changed = if before.len() == now.len() {
+            now.iter()
+                .zip(before.iter())
+                .filter(|(a, b)| a != b)
+                .count()
+        } else {
+            0
+        };
+        let counts = self.system.count_over_ranks([
+            now.iter().filter(|&&s| s > 0).count(),
+            now.iter().filter(|&&s| s > 1).count(),
+            changed,
+        ]);
+        let [active, slipping, changed] = counts;
+        *before = now;
+        self.recorder.borrow_mut().show(&format!(
+            "    {iteration:>3}  residual {norm:.3e} mm  {active} points in contact, \
+             {slipping} slip, {changed} changed\n"
+        ));
+        Ok(())
+    }
+
     fn after_solve(&self, ts: &mut TsRef, t: f64) -> Result<(), CallbackError> {
         let snes: &SnesRef = ts.snes()?;
         let reason: SnesReason = snes.converged_reason()?;
@@ -264,9 +355,9 @@ impl Simulation {
             });
         }
         self.counts.set(counts);
-        // PETSc would go on shortening the step: stop it where shorter steps are not allowed.
+        // PETSc would go on shortening the step, or repeating the first one: stop it where it must not.
         let next = ts.time_step()? * defaults::CUT_BACK;
-        if reason.is_diverged() && next < self.least_step {
+        if reason.is_diverged() && (counts.steps == 0 || next < self.least_step) {
             ts.set_max_step_rejections(0)?;
         }
         Ok(())
@@ -361,16 +452,6 @@ impl Simulation {
         }
         Ok(())
     }
-}
-
-/// Everything that reads options has read them: what is left over is a slip of the pen, unless
-/// PETSc reads it later.
-fn refuse_unknown_options() -> Result<(), RunError> {
-    let (errors, _) = check_unused(&petsc::options::unused()?);
-    errors
-        .into_iter()
-        .next()
-        .map_or(Ok(()), |error| Err(error.into()))
 }
 
 /// The tangent is asked for where the residual was evaluated before: it cannot fail alone.

@@ -7,8 +7,13 @@ use petsc::VectorRef;
 use super::{RunError, StaticPath};
 use crate::system::System;
 
-/// Steps in which the tools' forces go to zero.
-const STEPS: usize = 8;
+/// First step of the tools' forces towards zero, as a share of them.
+const FIRST_STEP: f64 = 0.125;
+/// The shortest step that is tried.
+const LEAST_STEP: f64 = 1e-4;
+/// Growth of the step after an accepted one, and shrinkage after a refused one.
+const GROWTH: f64 = 1.5;
+const CUT_BACK: f64 = 0.25;
 
 /// Angle and fit of a sheet without tools.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -26,7 +31,7 @@ pub struct Springback {
 }
 
 /// Takes the tools away from the accepted unknowns `u` at time `t` (ms) and lets their forces go to
-/// zero in a few static steps. `None` if a step does not converge. `system` is left as it was.
+/// zero in static steps. `None` if they do not converge. `system` is left as it was.
 /// Collective.
 ///
 /// # Errors
@@ -36,9 +41,17 @@ pub fn springback(system: &System, t: f64, u: &VectorRef) -> Result<Option<Sprin
     let (released, unknowns) = system.released(u, 0.0, 1.0)?;
     let released = Rc::new(released);
     let mut path = StaticPath::new(Rc::clone(&released), unknowns)?;
-    for step in 1..=STEPS {
-        if !path.advance(step as f64 / STEPS as f64)?.is_converged() {
-            return Ok(None);
+    let (mut faded, mut step) = (0.0, FIRST_STEP);
+    while faded < 1.0 {
+        let next = f64::min(faded + step, 1.0);
+        if path.advance(next)?.is_converged() {
+            faded = next;
+            step *= GROWTH;
+        } else {
+            step *= CUT_BACK;
+            if step < LEAST_STEP {
+                return Ok(None);
+            }
         }
     }
     let free = released.measures(1.0, path.unknowns(), None)?;

@@ -41,7 +41,7 @@ pub struct System {
     comm: SimpleCommunicator,
     /// Rank of every element.
     pub(super) parts: Partition,
-    numbering: Numbering,
+    pub(super) numbering: Numbering,
     pub(super) local: RefCell<LocalSystem>,
     scatter: Scatter,
     template: Vector,
@@ -73,7 +73,7 @@ impl System {
         comm: SimpleCommunicator,
     ) -> petsc::Result<Self> {
         let (ranks, rank) = (comm.size() as usize, comm.rank() as usize);
-        let numbering = Numbering::new(&problem.mesh, &parts, ranks, problem.contact_samples.len());
+        let numbering = Numbering::new(&problem, &parts, ranks);
         let local = LocalSystem::new(problem, &parts, &numbering, rank);
         let template = Vector::new(&comm, numbering.row_count(rank))?;
         let scatter = Scatter::new(&template, local.rows())?;
@@ -132,6 +132,14 @@ impl System {
         Matrix::from_coo(&self.comm, self.template.local_size()?, &rows, &columns)
     }
 
+    /// A matrix of the Jacobian's size that keeps no entries, for a solver that is not asked for any.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn placeholder_matrix(&self) -> petsc::Result<Matrix> {
+        Matrix::placeholder(&self.comm, self.template.local_size()?)
+    }
+
     /// Lower and upper bounds: gaps are not negative, everything else is free.
     ///
     /// # Errors
@@ -150,8 +158,7 @@ impl System {
 
     /// Number of displacements this rank owns; they come first among its rows.
     pub fn owned_displacements(&self) -> usize {
-        let rows = self.numbering.row_count(self.comm.rank() as usize);
-        rows - UNKNOWNS_PER_POINT * self.local().contacts.len()
+        self.numbering.displacement_count(self.comm.rank() as usize)
     }
 
     /// Positions of the gaps among the rows this rank owns. They follow the displacements.
@@ -216,7 +223,8 @@ impl System {
     }
 
     /// Jacobian at time `t` and unknowns `u`, with `shift` the derivative of the acceleration by the
-    /// unknown. Collective.
+    /// unknown, for `out` (unless it is a placeholder) and for [`CondensedSolve`](super::CondensedSolve).
+    /// Collective.
     ///
     /// # Errors
     /// As [`System::residual`].
@@ -230,7 +238,9 @@ impl System {
         } = &mut *scratch;
         self.scatter.forward(u, local_u)?;
         let evaluated = self.local().jacobian(t, local_u, shift, jacobian);
-        out.set_values_coo(jacobian)?;
+        if out.takes_values()? {
+            out.set_values_coo(jacobian)?;
+        }
         self.note(evaluated)
     }
 
@@ -250,6 +260,26 @@ impl System {
         let local = self.local();
         let problem = local.problem();
         Ok(problem.whole_sheet * problem.young_modulus * sum)
+    }
+
+    /// Largest displacement among the unknowns `u`, mm. Collective.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn largest_displacement(&self, u: &VectorRef) -> petsc::Result<f64> {
+        let count = self.owned_displacements();
+        let mine = u.read()?[..count]
+            .iter()
+            .fold(0.0_f64, |largest, x| largest.max(x.abs()));
+        let mut largest = 0.0;
+        self.comm
+            .all_reduce_into(&mine, &mut largest, SystemOperation::max());
+        Ok(largest)
+    }
+
+    /// This rank's entries of the last Jacobian, in the order of [`LocalSystem::jacobian_pattern`].
+    pub(super) fn jacobian_values(&self) -> Ref<'_, [f64]> {
+        Ref::map(self.scratch.borrow(), |scratch| &scratch.jacobian[..])
     }
 
     fn note(&self, evaluated: Result<(), ElementFailure>) -> Evaluation {
@@ -308,6 +338,25 @@ impl System {
         self.comm
             .all_reduce_into(&mine.maxima[..], &mut all.maxima[..], max);
         Ok(Measures::from_reduced(&all, local.problem().whole_sheet))
+    }
+
+    /// Status of this rank's contact points at an iterate: 0 open, 1 in contact, 2 slipping forwards,
+    /// 3 backwards.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn contact_status(&self, t: f64, u: &VectorRef) -> petsc::Result<Vec<u8>> {
+        let values = self.local_values(u)?;
+        Ok(self.local().contact_status(t, &values))
+    }
+
+    /// Sums of counts over the ranks. Collective.
+    pub fn count_over_ranks<const N: usize>(&self, mine: [usize; N]) -> [usize; N] {
+        let mine = mine.map(|count| count as u64);
+        let mut all = [0_u64; N];
+        self.comm
+            .all_reduce_into(&mine[..], &mut all[..], SystemOperation::sum());
+        all.map(|count| count as usize)
     }
 
     /// The local values of `u`: x and y of each local node, multiplier and gap of each local contact

@@ -1,6 +1,7 @@
 //! Fields for pictures: nodal averages of what the Gauss points say, and the contact points' values.
 
 use super::evaluate::ElementFailure;
+use super::local::LocalContact;
 use super::{LocalSystem, System, SystemError};
 use crate::element::{gauss_points, shape};
 use crate::mesh::SurfaceSide;
@@ -208,6 +209,25 @@ impl LocalSystem {
                 }
             })
             .collect()
+    }
+
+    /// Status of this rank's contact points at time `t` (ms) and local unknowns `u`: 0 open, 1 in
+    /// contact, 2 slipping forwards, 3 backwards.
+    pub fn contact_status(&self, t: f64, u: &[f64]) -> Vec<u8> {
+        let status = |(point, contact): (usize, &LocalContact)| {
+            let m = self.multiplier(point);
+            if u[m + 1] > 0.0 || u[m] <= 0.0 {
+                return 0;
+            }
+            let distance = self.contact_distance(contact, t, u);
+            let traction = contact.law.traction(&distance, u[m], &contact.state);
+            match traction.by_multiplier {
+                0.0 => 1,
+                slope if slope > 0.0 => 2,
+                _ => 3,
+            }
+        };
+        self.contacts.iter().enumerate().map(status).collect()
     }
 
     /// All contact points of this rank at time `t` (ms) and unknowns `u` (local).

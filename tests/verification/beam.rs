@@ -20,8 +20,7 @@ its difference from the exact one, 0.9 %, is not ours. Tolerance: the discretisa
 };
 
 fn cantilever(world: &SimpleCommunicator) -> Result<Answer> {
-    const SOURCE: &str =
-        "Timoshenko and Goodier 1970, article 21; Augarde and Deeks 2008, eqs. 1-2";
+    const SOURCE: &str = "Timoshenko and Goodier 1970, article 21; Augarde and Deeks 2008";
     const LENGTH: f64 = 10.0;
     const DEPTH: f64 = 1.0;
     let constants = Constants::elastic();

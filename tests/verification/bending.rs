@@ -40,8 +40,7 @@ fn moment(constants: &Constants, surface: f64) -> f64 {
 }
 
 fn strip(world: &SimpleCommunicator) -> Result<Answer> {
-    const SOURCE: &str =
-        "moment-curvature integral (Hill 1950, chapter IV), rates integrated independently";
+    const SOURCE: &str = "moment-curvature integral, rates integrated independently";
     let constants = Constants::stiffened(STIFFER);
     let stiffness = constants.plane_modulus() * THICKNESS.powi(3) / 12.0;
     let curvature_of = |surface: f64| surface / (0.5 * THICKNESS);

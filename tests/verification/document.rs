@@ -16,6 +16,7 @@ elements, contact, and motion in time. `scripts/verify.sh` runs all cases and wr
 
 An error is relative to the reference unless it is marked with its absolute unit by *abs*. A tolerance says what the method
 should reach (rounding, the order of the scheme, or the terms the reference neglects), and the text of a case says which.
+Numbers below 1e-9 are shown as such: they are rounding.
 ";
 
 /// Writes the page and its pictures below docs/.
@@ -54,19 +55,30 @@ fn section(page: &mut String, case: &Case, answer: &Answer) -> Result<()> {
 fn table_line(row: &Row) -> String {
     let kind = if row.relative { "" } else { " abs" };
     format!(
-        "| {} | {} | {} | {:.1e}{kind} | {:.0e}{kind} | {} |",
+        "| {} | {} | {} | {}{kind} | {:.0e}{kind} | {} |",
         row.quantity,
         number(row.computed),
         number(row.reference),
-        row.error(),
+        error(row.error()),
         row.tolerance,
         row.source
     )
 }
 
+/// Below this a number is rounding, which differs from machine to machine.
+const ROUNDING: f64 = 1e-9;
+
+fn error(value: f64) -> String {
+    if value < ROUNDING {
+        format!("< {ROUNDING:.0e}")
+    } else {
+        format!("{value:.1e}")
+    }
+}
+
 /// Seven digits, with an exponent where that is shorter.
 fn number(value: f64) -> String {
-    if value == 0.0 {
+    if value.abs() < ROUNDING {
         return "0".to_owned();
     }
     if !(1e-3..1e6).contains(&value.abs()) {

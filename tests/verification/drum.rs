@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use mpi::topology::SimpleCommunicator;
 use ssnp155::element::Quadrature;
-use ssnp155::mesh::{SheetMesh, SurfaceSide};
+use ssnp155::mesh::SheetMesh;
 use ssnp155::system::Factor;
 
 use crate::flow::Constants;
@@ -80,7 +80,7 @@ fn eytelwein(world: &SimpleCommunicator) -> Result<Answer> {
         let forces = statics.internal_forces()?;
         let drawn: f64 = end.iter().map(|&n| forces[n][0]).sum();
         let touching: Vec<_> = statics
-            .contacts(SurfaceSide::Bottom)?
+            .contacts()?
             .into_iter()
             .filter(|point| point.active)
             .collect();

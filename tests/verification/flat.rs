@@ -2,7 +2,6 @@
 
 use mpi::topology::SimpleCommunicator;
 use ssnp155::element::Quadrature;
-use ssnp155::mesh::SurfaceSide;
 use ssnp155::system::Factor;
 
 use crate::flow::{Constants, bisect};
@@ -48,14 +47,14 @@ fn pressed(world: &SimpleCommunicator) -> Result<Answer> {
         block.loads = traction(&mesh, Side::Top, |_| [0.0, -pressure], &growing);
         let on_axis = nodes_where(&mesh, |x| x[0] == 0.0);
         block.supports = on_axis.iter().map(|&n| held(n, 0)).collect();
-        rest_on(&mut block, flat(0.0, [-1.0, 1.0]), points);
+        rest_on(&mut block, flat(0.0), points);
         block.contact_compliance = COMPLIANCE;
         let mut statics = Statics::new(world, block, Touching::All, 1e-13)?;
         for step in 1..=2 {
             statics.advance(f64::from(step) / 2.0)?;
         }
         let label = format!("{points} points per edge, {quadrature:?} integration");
-        let contacts = statics.contacts(SurfaceSide::Bottom)?;
+        let contacts = statics.contacts()?;
         let worst = |value: &dyn Fn(usize) -> f64, count: usize| {
             (0..count).map(|i| value(i).abs()).fold(0.0, f64::max)
         };

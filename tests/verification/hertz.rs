@@ -6,13 +6,13 @@ use std::sync::Arc;
 use mpi::topology::SimpleCommunicator;
 use ssnp155::contact::contact_rule;
 use ssnp155::element::Quadrature;
-use ssnp155::mesh::{SheetMesh, SurfaceSide};
+use ssnp155::mesh::SheetMesh;
 use ssnp155::system::Tool;
 use ssnp155::tool::{Motion, PunchMotion, punch};
 
 use crate::flow::Constants;
 use crate::row::{Answer, Case, Result, Row};
-use crate::statics::{Statics, Touching, fixed, flat, held, nodes_where, problem};
+use crate::statics::{Statics, Touching, held, nodes_where, problem};
 use crate::svg::Chart;
 
 pub const CYLINDER: Case = Case {
@@ -68,7 +68,6 @@ fn cylinder(world: &SimpleCommunicator) -> Result<Answer> {
     }
     block.contact_samples = contact_rule(6);
     block.contact_compliance = COMPLIANCE;
-    block.lower_tool = Some(fixed(flat(-1e3, [-1.0, 1.0])));
     block.upper_tool = Some(Arc::new(Tool {
         profile: punch(RADIUS, SIZE, RADIUS),
         motion: Motion::Down(PunchMotion {
@@ -88,7 +87,7 @@ fn cylinder(world: &SimpleCommunicator) -> Result<Answer> {
     let peak = 2.0 * force / (PI * half_width);
     let hertz = |x: f64| peak * (1.0 - (x / half_width).powi(2)).max(0.0).sqrt();
     let points: Vec<[f64; 2]> = statics
-        .contacts(SurfaceSide::Top)?
+        .contacts()?
         .iter()
         .map(|point| [point.reference[0], point.pressure])
         .collect();

@@ -31,7 +31,6 @@ pub fn integrate<T: 'static>(
     observe: impl Fn(&System, f64, &VectorRef, &VectorRef) -> std::result::Result<T, CallbackError>
     + 'static,
 ) -> Result<Vec<T>> {
-    petsc::options::set("snes_atol", "1e-14")?;
     let nodes = model.mesh.nodes.clone();
     let system = Rc::new(System::new(model, world.duplicate())?);
     let mut u = start_unknowns(&system, Touching::All)?;
@@ -43,6 +42,7 @@ pub fn integrate<T: 'static>(
         pair.copy_from_slice(&(start.velocity)(x));
     }
     let mut ts = Ts::new(world)?;
+    ts.set_options_prefix("motion_")?;
     let (for_residual, for_jacobian) = (Rc::clone(&system), Rc::clone(&system));
     ts.set_second_order(
         &u,

@@ -39,7 +39,7 @@ pub const DISPLACEMENT: Case = Case {
     name: "patch_displacement",
     title: "Elements: patch test with prescribed displacements",
     text: "4 x 3 distorted elements; the outer nodes follow u = (F - 1) X. The inner ones must do so too, and the Cauchy stress must be \
-that of the material point everywhere: elastic at small strain, and with plastic strains of 0.16 and a rotation in ten steps. \
+that of the material point everywhere: elastic at small strain, and with plastic strains of 0.18 and a rotation in ten steps. \
 Tolerance: the convergence of Newton's method.",
     quick: true,
     run: displacement,

@@ -3,7 +3,7 @@
 use mpi::topology::SimpleCommunicator;
 use ssnp155::contact::contact_rule;
 use ssnp155::element::Quadrature;
-use ssnp155::mesh::{SheetMesh, SurfaceSide};
+use ssnp155::mesh::SheetMesh;
 use ssnp155::system::{Factor, NodalValue, Problem};
 
 use crate::flow::Constants;
@@ -38,7 +38,7 @@ fn block(mesh: &SheetMesh, friction: (f64, f64), pushed: &[usize], path: &[(f64,
             factor: Factor(path.to_vec()),
         })
         .collect();
-    rest_on(&mut block, flat(0.0, [-1.0, 1.0]), POINTS);
+    rest_on(&mut block, flat(0.0), POINTS);
     block.contact_compliance = CONTACT_COMPLIANCE;
     (block.friction_coefficient, block.friction_compliance) = friction;
     block
@@ -71,13 +71,13 @@ fn cycle(world: &SimpleCommunicator) -> Result<Answer> {
         let t = 1.0 + f64::from(step);
         statics.advance(t)?;
         exact = (exact - (moved.at(t) - moved.at(t - 1.0)) / FRICTION.1).clamp(-limit, limit);
-        let points = statics.contacts(SurfaceSide::Bottom)?;
+        let points = statics.contacts()?;
         for point in &points {
             worst = worst.max((point.friction - exact).abs());
             let slips = exact.abs() > limit * (1.0 - 1e-9);
             wrong += f64::from(u8::from(point.slips != slips));
         }
-        if [2, 10, 13, 30, 33, 50].contains(&step) {
+        if [2, 10, 12, 30, 32, 50].contains(&step) {
             let quantity = format!(
                 "friction traction on the block at {:.3} mm, step {step}, MPa",
                 moved.at(t)
@@ -161,7 +161,7 @@ fn bar(world: &SimpleCommunicator) -> Result<Answer> {
         let edge = LENGTH / mesh.nx as f64;
         let friction: f64 = contact_rule(POINTS)
             .iter()
-            .zip(statics.contacts(SurfaceSide::Bottom)?)
+            .zip(statics.contacts()?)
             .map(|(sample, point)| sample.shape[0] * sample.weight * edge * point.friction)
             .sum();
         Ok(internal - friction)

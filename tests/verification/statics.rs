@@ -9,7 +9,7 @@ use mpi::traits::Communicator;
 use petsc::Vector;
 use ssnp155::contact::contact_rule;
 use ssnp155::element::Quadrature;
-use ssnp155::mesh::{SheetMesh, SurfaceSide};
+use ssnp155::mesh::SheetMesh;
 use ssnp155::run::StaticPath;
 use ssnp155::system::{
     ContactPointSample, Factor, Measures, NodalValue, NodeSample, Problem, System, Tool,
@@ -39,12 +39,10 @@ pub fn problem(mesh: SheetMesh, constants: &Constants, quadrature: Quadrature) -
     }
 }
 
-/// Gives the problem `points` contact points per edge, the tool `lower` below and one that is never
-/// touched above.
+/// Gives the problem `points` contact points per edge and the tool `lower` below.
 pub fn rest_on(problem: &mut Problem, lower: Profile, points: usize) {
     problem.contact_samples = contact_rule(points);
     problem.lower_tool = Some(fixed(lower));
-    problem.upper_tool = Some(fixed(flat(1e3, [1.0, -1.0])));
 }
 
 /// A tool that does not move.
@@ -53,12 +51,11 @@ pub fn fixed(profile: Profile) -> Arc<Tool> {
     Arc::new(Tool { profile, motion })
 }
 
-/// The horizontal line at height `y`, walked from `along[0]` to `along[1]`: to the right its free
-/// side is above, to the left below.
-pub fn flat(y: f64, along: [f64; 2]) -> Profile {
+/// The horizontal line at height `y`, free above.
+pub fn flat(y: f64) -> Profile {
     Profile::new(vec![Piece::Segment {
-        start: [along[0], y],
-        end: [along[1], y],
+        start: [-1.0, y],
+        end: [1.0, y],
     }])
 }
 
@@ -232,16 +229,10 @@ impl Statics {
         Ok(self.system.node_samples(&sampler, self.time, &values)?)
     }
 
-    /// The contact points of one face.
-    pub fn contacts(&self, side: SurfaceSide) -> Result<Vec<ContactPointSample>> {
+    /// The contact points.
+    pub fn contacts(&self) -> Result<Vec<ContactPointSample>> {
         let values = self.values()?;
-        let local = self.system.local();
-        let points = local.contact_points(self.time, &values);
-        let half = points.len() / 2;
-        Ok(match side {
-            SurfaceSide::Bottom => points[..half].to_vec(),
-            SurfaceSide::Top => points[half..].to_vec(),
-        })
+        Ok(self.system.local().contact_points(self.time, &values))
     }
 
     pub fn measures(&self) -> Result<Measures> {

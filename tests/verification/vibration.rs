@@ -164,7 +164,7 @@ fn frequency_and_order(world: &SimpleCommunicator) -> Result<Answer> {
             order,
             2.0,
             0.1,
-            "Chung and Hulbert 1993, eq. 17",
+            "Chung and Hulbert 1993",
         ));
     }
     Ok(rows.into())

@@ -1,0 +1,116 @@
+//! What a run is judged by: the reference values of its case, and the certificate of every step.
+
+use super::RunError;
+use super::ledger::LEAST_FORCE;
+use crate::case::{self, Case, Instant, ReferenceValue};
+use crate::output::{StepRecord, Tolerance, VerdictRow, VerdictTable};
+
+/// Largest share by which punch force may differ from die force and inertia.
+pub(super) const BALANCE_LIMIT: f64 = 1e-6;
+/// Largest pull of a contact point as a share of the punch force: what the residual's tolerance leaves.
+pub(super) const PULL_LIMIT: f64 = 1e-6;
+
+/// The certificate's limits for every run that got anywhere, and the reference values where the
+/// case is the one they belong to.
+pub(super) fn judge(
+    case: &Case,
+    records: &[StepRecord],
+    finished: bool,
+) -> Result<VerdictTable, RunError> {
+    let mut table = VerdictTable::default();
+    if finished {
+        for value in case.reference_values()? {
+            table.rows.push(VerdictRow::new(
+                format!("{}, {}", value.quantity, when(&value)),
+                computed(case, records, &value),
+                value.value,
+                match value.tolerance {
+                    case::Tolerance::Absolute(distance) => Tolerance::Absolute(distance),
+                    case::Tolerance::Relative(share) => Tolerance::Relative(share),
+                },
+                value.unit,
+                value.source,
+            ));
+        }
+    }
+    if records.is_empty() {
+        return Ok(table);
+    }
+    let worst = |badness: fn(&StepRecord) -> f64| {
+        // NaN wins: it must not pass as small.
+        records
+            .iter()
+            .map(badness)
+            .fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a })
+    };
+    let mut limit = |quantity: &str, value: f64, bound: f64, unit: &str| {
+        let source = "certificate of every step";
+        table.rows.push(VerdictRow::new(
+            quantity,
+            value,
+            bound,
+            Tolerance::AtMost,
+            unit,
+            source,
+        ));
+    };
+    let penetration = worst(|r| r.max_penetration_mm);
+    limit(
+        "deepest penetration",
+        penetration,
+        case.discretisation.penetration_limit,
+        "mm",
+    );
+    limit(
+        "strongest pull of a contact point, of the punch force",
+        worst(|r| -r.min_contact_force_N / r.force_N.max(LEAST_FORCE)),
+        PULL_LIMIT,
+        "1",
+    );
+    let imbalance = worst(|r| r.balance_error.abs());
+    limit(
+        "punch force less die force and inertia",
+        imbalance,
+        BALANCE_LIMIT,
+        "1",
+    );
+    Ok(table)
+}
+
+fn when(value: &ReferenceValue) -> String {
+    match value.when {
+        Instant::Travel(depth) => format!("d = {depth} mm"),
+        Instant::FullStroke => "full stroke".to_owned(),
+        Instant::LargestWhileLoading => "largest".to_owned(),
+        Instant::EndOfUnloading => "end".to_owned(),
+        Instant::Withdrawn => "tools withdrawn".to_owned(),
+    }
+}
+
+/// Our value for a reference value; NaN, which never holds, if there is none.
+fn computed(case: &Case, records: &[StepRecord], value: &ReferenceValue) -> f64 {
+    let motion = case.loading.motion();
+    let quantity = |record: &StepRecord| match value.id.as_str() {
+        id if id.starts_with("dy_a_punch") => record.dy_A_punch_mm,
+        id if id.starts_with("dy_a_sheet") => record.dy_A_sheet_mm,
+        id if id.starts_with("force") => record.force_N,
+        id if id.starts_with("angle") => record.angle_deg,
+        _ => f64::NAN,
+    };
+    let at = |time: f64| {
+        let record = records
+            .iter()
+            .find(|record| (record.t_ms - time).abs() < 1e-6);
+        record.map_or(f64::NAN, quantity)
+    };
+    match value.when {
+        Instant::Travel(depth) => at(motion.time_at_depth(depth)),
+        Instant::FullStroke => at(motion.time_load),
+        Instant::EndOfUnloading | Instant::Withdrawn => at(motion.end()),
+        Instant::LargestWhileLoading => records
+            .iter()
+            .take_while(|record| record.t_ms <= motion.time_load)
+            .map(quantity)
+            .fold(f64::NAN, f64::max),
+    }
+}

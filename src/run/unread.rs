@@ -1,0 +1,36 @@
+//! Options nobody read: ours are read first, so that a slip of the pen is found before the run; what
+//! PETSc did not read is known after it.
+
+use super::{RunError, defaults};
+use crate::case::check_unused;
+
+/// Refuses the first option that is neither one of ours nor of PETSc's. All of ours must have been read.
+pub(super) fn refuse_slips() -> Result<(), RunError> {
+    let (errors, _) = check_unused(&petsc::options::unused()?);
+    errors
+        .into_iter()
+        .next()
+        .map_or(Ok(()), |error| Err(error.into()))
+}
+
+/// A line for each option of PETSc's family that PETSc did not read, after a run. Our own choices are
+/// left out: who chooses another solver need not take back the options of the one chosen here.
+pub(super) fn warnings() -> Result<String, RunError> {
+    let mut unused = petsc::options::unused()?;
+    unused.retain(|(name, value)| {
+        !defaults::is_default(name, value.as_deref()) && !LATE.contains(&name.as_str())
+    });
+    let (_, warnings) = check_unused(&unused);
+    Ok(warnings
+        .iter()
+        .map(|warning| format!("warning: {warning}\n"))
+        .collect())
+}
+
+/// Options that PETSc reads when it ends.
+const LATE: &[&str] = &[
+    "options_left",
+    "options_view",
+    "malloc_dump",
+    "objects_dump",
+];
