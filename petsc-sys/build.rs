@@ -27,10 +27,12 @@ const FUNCTIONS: &[&str] = &[
     "Mat(GetLocalSize|GetSize|GetOwnershipRange|GetRow|RestoreRow|GetInfo|Norm|Mult|MultTranspose)",
     "Mat(Copy|Scale|Shift|AXPY|GetDiagonal|CreateVecs|GetFactor|LUFactorSymbolic|LUFactorNumeric|Solve)",
     "Mat(FactorInfoInitialize|FactorGetSolverType|FactorGetError|FactorClearError)",
+    "MatCreateShell|MatShellSetOperation",
     "MatMumps(SetIcntl|GetIcntl|GetInfo|GetInfog|GetRinfog|SetCntl)",
     // Linear solvers.
     "KSP(Create|Destroy|SetOperators|SetFromOptions|SetOptionsPrefix|SetType|GetPC|SetUp|Solve|Reset)",
     "KSP(GetConvergedReason|GetIterationNumber|GetResidualNorm|SetTolerances)",
+    "PC(FactorSetMatOrderingType|RedundantGetKSP)",
     "PC(SetType|GetType|GetOperators|SetFailedReason|FactorGetMatSolverType|FactorSetMatSolverType)",
     "PCShell(SetContext|GetContext|SetSetUp|SetApply|SetName)",
     // Nonlinear solvers.
@@ -66,6 +68,7 @@ const VARIABLES: &[&str] = &[
 /// Types used by no listed function's signature.
 const TYPES: &[&str] = &[
     "MatOption",
+    "MatReuse",
     "SNESLineSearchReason",
     "TSExactFinalTimeOption",
 ];

@@ -32,6 +32,7 @@ mod guard;
 mod handle;
 mod ksp;
 mod matrix;
+mod placeholder;
 mod reason;
 mod scatter;
 mod session;

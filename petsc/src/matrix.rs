@@ -98,6 +98,14 @@ impl MatrixRef {
         unsafe { table(self.object(), c"petsc.rs: coo length") }
     }
 
+    /// Whether the matrix was made by [`Matrix::from_coo`], so that its entries can be set.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn takes_values(&self) -> Result<bool> {
+        Ok(self.coo_length()?.0.get().is_some())
+    }
+
     /// Sets all entries of a matrix made by [`Matrix::from_coo`] to the sums of the values given for
     /// them, in the order of construction. Collective.
     ///

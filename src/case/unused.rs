@@ -20,6 +20,7 @@ const PETSC_NAMES: &[&str] = &[
     "ao_",
     "log_",
     "sub_",
+    "condensed_",
     "options_",
     "viewer_",
     "draw_",

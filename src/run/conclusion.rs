@@ -10,6 +10,7 @@ use super::{Failure, Outcome, Refusal, RunError, unread};
 use crate::case::Case;
 use crate::output::VerdictTable;
 use crate::output::monitor::{failed_banner, finished_banner};
+use crate::output::number;
 use crate::output::summary::{Certificates, Counts, Provenance, Status, Summary, Timing};
 
 /// Judges, writes and shows what came out; tells whether the run finished and all verdicts hold.
@@ -78,7 +79,7 @@ fn summarise(
                 text("penetration_mm"),
                 case.discretisation.penetration_limit,
             ),
-            (text("pull_N"), PULL_LIMIT),
+            (text("pull"), PULL_LIMIT),
             (text("balance"), BALANCE_LIMIT),
         ]),
         worst: certificates.worst(),
@@ -126,7 +127,7 @@ fn angles(case: &Case, outcome: &Outcome) -> Vec<(String, f64)> {
         angles.push(("end of the motion".to_owned(), record.angle_deg));
     }
     for springback in &outcome.springbacks {
-        let depth = motion.depth(springback.t_ms);
+        let depth = number(motion.depth(springback.t_ms));
         let name = format!("tools vanish at {depth} mm");
         angles.push((name, springback.released_angle_deg));
     }

@@ -22,11 +22,6 @@ const DEFAULTS: &[(&str, &str)] = &[
     ("snes_rtol", "0"),
     ("snes_stol", "0"),
     ("snes_divergence_tolerance", "-1"),
-    ("ksp_type", "preonly"),
-    ("pc_type", "lu"),
-    ("pc_factor_mat_solver_type", "mumps"),
-    // In two dimensions approximate minimum degree orders fastest and fills hardly more.
-    ("mat_mumps_icntl_7", "0"),
     // Step size is ours; PETSc's part is to cut back when a solve is refused.
     ("ts_adapt_type", "none"),
     ("ts_max_snes_failures", "-1"),

@@ -1,12 +1,13 @@
 //! What a run is judged by: the reference values of its case, and the certificate of every step.
 
 use super::RunError;
+use super::ledger::LEAST_FORCE;
 use crate::case::{self, Case, Instant, ReferenceValue};
 use crate::output::{StepRecord, Tolerance, VerdictRow, VerdictTable};
 
 /// Largest share by which punch force may differ from die force and inertia.
 pub(super) const BALANCE_LIMIT: f64 = 1e-6;
-/// Largest pull of a contact point that is still rounding, N.
+/// Largest pull of a contact point as a share of the punch force: what the residual's tolerance leaves.
 pub(super) const PULL_LIMIT: f64 = 1e-6;
 
 /// The certificate's limits for every run that got anywhere, and the reference values where the
@@ -61,10 +62,10 @@ pub(super) fn judge(
         "mm",
     );
     limit(
-        "strongest pull of a contact point",
-        worst(|r| -r.min_contact_force_N),
+        "strongest pull of a contact point, of the punch force",
+        worst(|r| -r.min_contact_force_N / r.force_N.max(LEAST_FORCE)),
         PULL_LIMIT,
-        "N",
+        "1",
     );
     let imbalance = worst(|r| r.balance_error.abs());
     limit(

@@ -6,6 +6,7 @@ mod conclusion;
 mod defaults;
 mod judgement;
 mod ledger;
+mod linear;
 mod newton;
 mod recorder;
 mod refusal;

@@ -4,11 +4,12 @@ use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
 use petsc::{
-    CallbackError, ConvergenceCheck, LineSearchInfo, SnesReason, SnesRef, Ts, TsReason, TsRef,
-    Vector, VectorRef,
+    CallbackError, ConvergenceCheck, LineSearchInfo, Matrix, SnesReason, SnesRef, Ts, TsReason,
+    TsRef, Vector, VectorRef,
 };
 
 use super::ledger::{LEAST_FORCE, Ledger, StepEffort};
+use super::linear::LinearSolve;
 use super::newton::{Damping, limited_length};
 use super::recorder::Recorder;
 use super::refusal::Refusal;
@@ -122,10 +123,12 @@ impl Simulation {
     pub(super) fn run(self: &Rc<Self>, case: &Case) -> Result<Finish, RunError> {
         defaults::set(case)?;
         let mut ts = Ts::new(self.system.comm())?;
-        self.set_problem(&mut ts, case.loading.dynamics)?;
+        let linear = LinearSolve::chosen(&self.system)?;
+        self.set_problem(&mut ts, case.loading.dynamics, linear.matrix(&self.system)?)?;
         self.set_hooks(&mut ts)?;
         let (lower, upper) = self.system.bounds()?;
         ts.snes_mut()?.set_type("vinewtonrsls")?;
+        linear.install(ts.snes_mut()?)?;
         ts.set_from_options()?;
         ts.snes_mut()?.set_variable_bounds(&lower, &upper)?;
         ts.set_time_step(self.control.borrow().planned())?;
@@ -133,7 +136,7 @@ impl Simulation {
         self.write_fields(0.0, &self.accepted.borrow(), None)?;
         self.recorder.borrow_mut().begin();
         let reason = self.solve(&mut ts)?;
-        let factor_solver = ts.snes()?.ksp()?.factor_solver()?;
+        let factor_solver = linear.factor_solver(ts.snes()?)?;
         Ok(Finish {
             reason,
             counts: self.counts.get(),
@@ -165,9 +168,13 @@ impl Simulation {
         self.recorder.into_inner()
     }
 
-    fn set_problem(self: &Rc<Self>, ts: &mut Ts, dynamics: Dynamics) -> Result<(), RunError> {
+    fn set_problem(
+        self: &Rc<Self>,
+        ts: &mut Ts,
+        dynamics: Dynamics,
+        matrix: Matrix,
+    ) -> Result<(), RunError> {
         let start = self.accepted.borrow();
-        let matrix = self.system.matrix()?;
         let (for_residual, for_jacobian) = (Rc::clone(&self.system), Rc::clone(&self.system));
         match dynamics {
             Dynamics::Slow => {

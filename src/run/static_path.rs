@@ -6,6 +6,7 @@ use std::rc::Rc;
 use petsc::{Snes, SnesReason, Vector, VectorRef};
 
 use super::RunError;
+use super::linear::LinearSolve;
 use super::newton::Damping;
 use crate::system::System;
 
@@ -29,8 +30,9 @@ impl StaticPath {
         snes.set_function(&unknowns, move |u, out| {
             this.residual(now.get(), u, None, out)
         })?;
+        let linear = LinearSolve::chosen(&system)?;
         let (this, now) = (Rc::clone(&system), Rc::clone(&time));
-        snes.set_jacobian(system.matrix()?, move |u, out| {
+        snes.set_jacobian(linear.matrix(&system)?, move |u, out| {
             let evaluated = this.jacobian(now.get(), u, 0.0, out);
             evaluated.map_err(super::simulation::not_evaluated)
         })?;
@@ -42,6 +44,7 @@ impl StaticPath {
                 .step_length(iteration, info.residual_norm))
         })?;
         snes.set_type("vinewtonrsls")?;
+        linear.install(&mut snes)?;
         snes.set_from_options()?;
         let (lower, upper) = system.bounds()?;
         snes.set_variable_bounds(&lower, &upper)?;

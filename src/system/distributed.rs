@@ -41,7 +41,7 @@ pub struct System {
     comm: SimpleCommunicator,
     /// Rank of every element.
     pub(super) parts: Partition,
-    numbering: Numbering,
+    pub(super) numbering: Numbering,
     pub(super) local: RefCell<LocalSystem>,
     scatter: Scatter,
     template: Vector,
@@ -132,6 +132,14 @@ impl System {
         Matrix::from_coo(&self.comm, self.template.local_size()?, &rows, &columns)
     }
 
+    /// A matrix of the Jacobian's size that keeps no entries, for a solver that is not asked for any.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn placeholder_matrix(&self) -> petsc::Result<Matrix> {
+        Matrix::placeholder(&self.comm, self.template.local_size()?)
+    }
+
     /// Lower and upper bounds: gaps are not negative, everything else is free.
     ///
     /// # Errors
@@ -150,8 +158,7 @@ impl System {
 
     /// Number of displacements this rank owns; they come first among its rows.
     pub fn owned_displacements(&self) -> usize {
-        let rows = self.numbering.row_count(self.comm.rank() as usize);
-        rows - UNKNOWNS_PER_POINT * self.local().contacts.len()
+        self.numbering.displacement_count(self.comm.rank() as usize)
     }
 
     /// Positions of the gaps among the rows this rank owns. They follow the displacements.
@@ -216,7 +223,8 @@ impl System {
     }
 
     /// Jacobian at time `t` and unknowns `u`, with `shift` the derivative of the acceleration by the
-    /// unknown. Collective.
+    /// unknown, for `out` (unless it is a placeholder) and for [`CondensedSolve`](super::CondensedSolve).
+    /// Collective.
     ///
     /// # Errors
     /// As [`System::residual`].
@@ -230,7 +238,9 @@ impl System {
         } = &mut *scratch;
         self.scatter.forward(u, local_u)?;
         let evaluated = self.local().jacobian(t, local_u, shift, jacobian);
-        out.set_values_coo(jacobian)?;
+        if out.takes_values()? {
+            out.set_values_coo(jacobian)?;
+        }
         self.note(evaluated)
     }
 
@@ -265,6 +275,11 @@ impl System {
         self.comm
             .all_reduce_into(&mine, &mut largest, SystemOperation::max());
         Ok(largest)
+    }
+
+    /// This rank's entries of the last Jacobian, in the order of [`LocalSystem::jacobian_pattern`].
+    pub(super) fn jacobian_values(&self) -> Ref<'_, [f64]> {
+        Ref::map(self.scratch.borrow(), |scratch| &scratch.jacobian[..])
     }
 
     fn note(&self, evaluated: Result<(), ElementFailure>) -> Evaluation {

@@ -8,7 +8,7 @@
 
 use super::LocalSystem;
 use super::local::LocalContact;
-use super::pattern::{CONTACT_ENTRIES, ELEMENT_ENTRIES};
+use super::pattern::{CONTACT_ENTRIES, CONTACT_LAYOUT as AT, ELEMENT_ENTRIES};
 use crate::contact::FrictionState;
 use crate::element::{ElementForce, SinglePointFailure};
 use crate::tool::Distance;
@@ -142,16 +142,14 @@ impl LocalSystem {
         let distance = self.contact_distance(contact, t, u);
         let traction = contact.law.traction(&distance, multiplier, &contact.state);
         let tangent = contact.law.tangent(&distance, multiplier, &traction);
-        for (i, row) in tangent.force_u.iter().enumerate() {
-            out[6 * i..6 * (i + 1)].copy_from_slice(row);
-        }
-        out[36..42].copy_from_slice(&tangent.force_multiplier);
-        out[42..48].copy_from_slice(&tangent.closure_u);
-        out[48] = tangent.closure_multiplier;
-        out[49] = tangent.closure_gap;
-        out[50..56].copy_from_slice(&tangent.complementarity_u);
-        out[56] = tangent.complementarity_multiplier;
-        out[57] = tangent.complementarity_gap;
+        out[AT.force_u].copy_from_slice(tangent.force_u.as_flattened());
+        out[AT.force_multiplier].copy_from_slice(&tangent.force_multiplier);
+        out[AT.closure_u].copy_from_slice(&tangent.closure_u);
+        out[AT.closure_multiplier] = tangent.closure_multiplier;
+        out[AT.closure_gap] = tangent.closure_gap;
+        out[AT.complementarity_u].copy_from_slice(&tangent.complementarity_u);
+        out[AT.complementarity_multiplier] = tangent.complementarity_multiplier;
+        out[AT.complementarity_gap] = tangent.complementarity_gap;
     }
 
     fn element_force(

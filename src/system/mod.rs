@@ -2,7 +2,9 @@
 //! and what can be measured on a state; keeps the committed history of the material points.
 //! Never: decides on steps, prints, or writes files.
 
+mod condensed;
 mod distributed;
+mod elimination;
 mod evaluate;
 mod local;
 mod measure;
@@ -13,6 +15,7 @@ mod release;
 mod sample;
 mod seed;
 
+pub use condensed::CondensedSolve;
 pub use distributed::{System, SystemError};
 pub use evaluate::ElementFailure;
 pub use local::LocalSystem;

@@ -19,6 +19,8 @@ pub struct Numbering {
     pub edge_row: Vec<usize>,
     /// First row of each rank, and the number of rows at the end.
     pub rank_rows: Vec<usize>,
+    /// The same if displacements alone are numbered.
+    pub rank_displacements: Vec<usize>,
 }
 
 impl Numbering {
@@ -45,10 +47,7 @@ impl Numbering {
         for edge in 0..mesh.surface.len() {
             sizes[edge_owner(edge)] += edge_unknowns(edge);
         }
-        let mut rank_rows = vec![0];
-        for size in &sizes {
-            rank_rows.push(rank_rows[rank_rows.len() - 1] + size);
-        }
+        let (rank_rows, rank_displacements) = (running_sum(&sizes), running_sum(&node_unknowns));
         let mut next = rank_rows.clone();
         let node_row = node_owner
             .iter()
@@ -73,6 +72,7 @@ impl Numbering {
             node_row,
             edge_row,
             rank_rows,
+            rank_displacements,
         }
     }
 
@@ -80,6 +80,26 @@ impl Numbering {
     pub fn row_count(&self, rank: usize) -> usize {
         self.rank_rows[rank + 1] - self.rank_rows[rank]
     }
+
+    /// Displacements owned by `rank`; they come first among its rows.
+    pub fn displacement_count(&self, rank: usize) -> usize {
+        self.rank_displacements[rank + 1] - self.rank_displacements[rank]
+    }
+
+    /// Row of the x displacement of `node` if displacements alone are numbered; y follows.
+    pub fn displacement_row(&self, node: usize) -> usize {
+        let owner = self.node_owner[node];
+        self.node_row[node] - self.rank_rows[owner] + self.rank_displacements[owner]
+    }
+}
+
+/// Sums of the first 0, 1, 2, … sizes.
+fn running_sum(sizes: &[usize]) -> Vec<usize> {
+    let mut sums = vec![0];
+    for size in sizes {
+        sums.push(sums[sums.len() - 1] + size);
+    }
+    sums
 }
 
 #[cfg(test)]

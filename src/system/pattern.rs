@@ -2,6 +2,8 @@
 //!
 //! Entries with a negative row are ignored by the matrix: those of the fixed displacements.
 
+use std::ops::Range;
+
 use super::LocalSystem;
 use super::local::LocalValue;
 
@@ -9,6 +11,30 @@ use super::local::LocalValue;
 pub(super) const ELEMENT_ENTRIES: usize = 256;
 /// Entries of one contact point: 6 x 6 and 6 in the equilibrium rows, 8 in each of its own.
 pub(super) const CONTACT_ENTRIES: usize = 58;
+
+/// Where the entries of a contact point are among its [`CONTACT_ENTRIES`].
+pub(super) struct ContactLayout {
+    pub force_u: Range<usize>,
+    pub force_multiplier: Range<usize>,
+    pub closure_u: Range<usize>,
+    pub closure_multiplier: usize,
+    pub closure_gap: usize,
+    pub complementarity_u: Range<usize>,
+    pub complementarity_multiplier: usize,
+    pub complementarity_gap: usize,
+}
+
+/// The order in which [`LocalSystem::jacobian_pattern`] lists them.
+pub(super) const CONTACT_LAYOUT: ContactLayout = ContactLayout {
+    force_u: 0..36,
+    force_multiplier: 36..42,
+    closure_u: 42..48,
+    closure_multiplier: 48,
+    closure_gap: 49,
+    complementarity_u: 50..56,
+    complementarity_multiplier: 56,
+    complementarity_gap: 57,
+};
 
 impl LocalSystem {
     /// Global rows and columns of all entries this rank contributes.

@@ -37,6 +37,7 @@ impl System {
         });
         let mut problem = Problem {
             loads: loads.collect(),
+            contact_samples: Vec::new(),
             lower_tool: None,
             upper_tool: None,
             density: 0.0,

@@ -1,0 +1,93 @@
+//! Who solves the linear systems of the Newton iterations: our condensed solve, or PETSc by itself.
+
+use std::rc::Rc;
+
+use petsc::{Failure, Matrix, SnesRef, options};
+
+use crate::system::{CondensedSolve, System};
+
+/// The nonlinear solver whose reduced set the condensed solve works on.
+const SOLVER: &str = "vinewtonrsls";
+
+/// Options that ask PETSc to solve the linear systems, with what it then needs by default.
+const LEFT_TO_PETSC: &str = "pc_type";
+const PETSC_DEFAULTS: &[(&str, &str)] = &[
+    ("ksp_type", "preonly"),
+    ("pc_type", "lu"),
+    ("pc_factor_mat_solver_type", "mumps"),
+    // In two dimensions approximate minimum degree orders fastest and fills hardly more.
+    ("mat_mumps_icntl_7", "0"),
+];
+
+/// Options that need the entries of the Jacobian even if our solve is used.
+const NEED_ENTRIES: &[&str] = &[
+    "ksp_type",
+    "snes_test_jacobian",
+    "snes_test_jacobian_view",
+    "snes_fd",
+    "snes_fd_color",
+    "snes_mf",
+    "snes_mf_operator",
+];
+
+/// The linear solve the options ask for.
+pub(super) struct LinearSolve {
+    condensed: Option<Rc<CondensedSolve>>,
+}
+
+impl LinearSolve {
+    /// Decides by the options, and gives PETSc's own solve its defaults. Collective.
+    pub fn chosen(system: &Rc<System>) -> petsc::Result<Self> {
+        let other_solver = options::get("snes_type")?.is_some_and(|given| given != SOLVER);
+        if options::is_given(LEFT_TO_PETSC)? || other_solver {
+            for (name, value) in PETSC_DEFAULTS {
+                options::set_default(name, value)?;
+            }
+            return Ok(Self { condensed: None });
+        }
+        let condensed = CondensedSolve::new(Rc::clone(system))?;
+        Ok(Self {
+            condensed: Some(Rc::new(condensed)),
+        })
+    }
+
+    /// The Jacobian's matrix: without entries if nobody reads them.
+    pub fn matrix(&self, system: &System) -> petsc::Result<Matrix> {
+        let mut read = self.condensed.is_none();
+        for name in NEED_ENTRIES {
+            read |= options::is_given(name)?;
+        }
+        if read {
+            system.matrix()
+        } else {
+            system.placeholder_matrix()
+        }
+    }
+
+    /// Makes the nonlinear solver use it. Call it before the solver reads its options.
+    pub fn install(&self, snes: &mut SnesRef) -> petsc::Result<()> {
+        let Some(condensed) = &self.condensed else {
+            return Ok(());
+        };
+        snes.ksp_mut()?.set_type("preonly")?;
+        let (for_setup, for_apply) = (Rc::clone(condensed), Rc::clone(condensed));
+        snes.set_shell_preconditioner(
+            move |snes, _| {
+                if for_setup.factor(&snes.active_set()?)? {
+                    Ok(())
+                } else {
+                    Err(Failure::Domain)
+                }
+            },
+            move |r, step| Ok(for_apply.solve(r, step)?),
+        )
+    }
+
+    /// The package that factorises.
+    pub fn factor_solver(&self, snes: &SnesRef) -> petsc::Result<Option<String>> {
+        match &self.condensed {
+            Some(condensed) => condensed.factor_solver(),
+            None => snes.ksp()?.factor_solver(),
+        }
+    }
+}
