@@ -91,6 +91,27 @@ impl SheetMesh {
         }
     }
 
+    /// The same mesh with every node moved to where `place` puts it (mm).
+    #[must_use]
+    pub fn mapped(mut self, place: impl Fn([f64; 2]) -> [f64; 2]) -> Self {
+        for node in &mut self.nodes {
+            *node = place(*node);
+        }
+        self
+    }
+
+    /// The same mesh with every mid-side node halfway between its corners.
+    #[must_use]
+    pub fn straightened(mut self) -> Self {
+        for element in &self.elements {
+            for side in 0..4 {
+                let [a, b] = [side, (side + 1) % 4].map(|corner| self.nodes[element[corner]]);
+                self.nodes[element[4 + side]] = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+            }
+        }
+        self
+    }
+
     /// Node numbers of a surface edge: left end, right end, middle.
     pub fn edge_nodes(&self, edge: &SurfaceEdge) -> [usize; 3] {
         edge.local_nodes.map(|a| self.elements[edge.element][a])
@@ -132,15 +153,10 @@ mod tests {
 
     #[test]
     fn mid_side_nodes_lie_between_their_corners() {
+        let bent = SheetMesh::new(6.0, 1.0, 4, 3).mapped(|[x, y]| [x + 0.1 * y * y, y]);
+        all_sides_are_straight(&bent.straightened());
         let mesh = SheetMesh::new(6.0, 1.0, 4, 3);
-        for element in &mesh.elements {
-            for (mid, (a, b)) in [(4, (0, 1)), (5, (1, 2)), (6, (2, 3)), (7, (3, 0))] {
-                for k in 0..2 {
-                    let mean = 0.5 * (mesh.nodes[element[a]][k] + mesh.nodes[element[b]][k]);
-                    assert!((mesh.nodes[element[mid]][k] - mean).abs() < 1e-14);
-                }
-            }
-        }
+        all_sides_are_straight(&mesh);
         for edge in &mesh.surface {
             let y = if edge.side == SurfaceSide::Bottom {
                 0.0
@@ -150,6 +166,17 @@ mod tests {
             let [left, right, mid] = mesh.edge_nodes(edge).map(|n| mesh.nodes[n]);
             assert!(left[0] < mid[0] && mid[0] < right[0]);
             assert!(left[1] == y && mid[1] == y && right[1] == y);
+        }
+    }
+
+    fn all_sides_are_straight(mesh: &SheetMesh) {
+        for element in &mesh.elements {
+            for (mid, (a, b)) in [(4, (0, 1)), (5, (1, 2)), (6, (2, 3)), (7, (3, 0))] {
+                for k in 0..2 {
+                    let mean = 0.5 * (mesh.nodes[element[a]][k] + mesh.nodes[element[b]][k]);
+                    assert!((mesh.nodes[element[mid]][k] - mean).abs() < 1e-14);
+                }
+            }
         }
     }
 }

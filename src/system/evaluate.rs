@@ -54,11 +54,9 @@ impl LocalSystem {
         Ok(())
     }
 
-    pub(super) fn add_internal_forces(
-        &self,
-        u: &[f64],
-        out: &mut [f64],
-    ) -> Result<(), ElementFailure> {
+    /// Adds the internal forces of this rank's elements at unknowns `u` (local), divided by Young's
+    /// modulus (mm), to the displacement rows of `out`.
+    pub fn add_internal_forces(&self, u: &[f64], out: &mut [f64]) -> Result<(), ElementFailure> {
         let scale = 1.0 / self.problem.young_modulus;
         let mut local = ElementForce::ZERO;
         for element in 0..self.elements.len() {

@@ -1,0 +1,139 @@
+//! Verification: what the program computes against closed solutions and independent integrations.
+//!
+//! Without arguments the quick cases run, as a test. `-- --document` runs all and writes
+//! docs/verification.md and its pictures; a word runs the cases whose names hold it. One process, one
+//! rank: MPI and PETSc start once.
+
+mod beam;
+mod bending;
+mod convergence;
+mod document;
+mod drum;
+mod flat;
+mod flow;
+mod hertz;
+mod impact;
+mod material;
+mod motion;
+mod patch;
+mod row;
+mod shear;
+mod sliding;
+mod statics;
+mod svg;
+mod vibration;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+use std::time::Instant;
+
+use mpi::topology::SimpleCommunicator;
+use row::{Answer, Case};
+
+/// All cases, in the order of the document.
+const CASES: &[Case] = &[
+    material::UNIAXIAL,
+    material::PLANE_STRAIN,
+    material::CYCLIC,
+    shear::ELASTIC,
+    shear::PLASTIC,
+    patch::DISPLACEMENT,
+    patch::TRACTION,
+    convergence::MANUFACTURED,
+    beam::CANTILEVER,
+    beam::ELASTICA,
+    bending::STRIP,
+    flat::PRESSURE,
+    hertz::CYLINDER,
+    sliding::RIGID,
+    sliding::DEFORMABLE,
+    drum::EYTELWEIN,
+    vibration::BAR,
+    vibration::DAMPING,
+    vibration::BEAM,
+    impact::WALL,
+];
+
+/// Options of PETSc. Static solves choose `snes_atol` themselves and use the program's own linear solve;
+/// motions in time use PETSc's, so that both are verified.
+const OPTIONS: &[(&str, &str)] = &[
+    ("snes_rtol", "0"),
+    ("snes_stol", "0"),
+    ("snes_divergence_tolerance", "-1"),
+    ("snes_max_it", "60"),
+    ("motion_snes_rtol", "0"),
+    ("motion_snes_stol", "0"),
+    ("motion_snes_atol", "1e-14"),
+    ("motion_snes_max_it", "60"),
+    ("motion_ksp_type", "preonly"),
+    ("motion_pc_type", "lu"),
+    ("motion_pc_factor_mat_solver_type", "mumps"),
+    ("motion_ts_adapt_type", "none"),
+    ("motion_ts_max_steps", "1000000"),
+];
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let document = arguments.iter().any(|word| word == "--document");
+    let words: Vec<&String> = arguments.iter().filter(|w| !w.starts_with('-')).collect();
+    let Some((universe, _)) = mpi::initialize_with_threading(mpi::Threading::Funneled) else {
+        eprintln!("verification: MPI cannot be started");
+        return ExitCode::FAILURE;
+    };
+    let world = universe.world();
+    let chosen = CASES.iter().filter(|case| {
+        let named = words.iter().any(|word| case.name.contains(word.as_str()));
+        named || (words.is_empty() && (document || case.quick))
+    });
+    let passed = {
+        let _session = petsc::Session::new(&["verification".to_owned()]).expect("PETSc starts");
+        for (name, value) in OPTIONS {
+            petsc::options::set_default(name, value).expect("an option can be set");
+        }
+        let answers: Vec<_> = chosen.map(|case| (case, run(case, &world))).collect();
+        let passed = answers.iter().all(|(_, answer)| holds(answer.as_ref()));
+        if document && words.is_empty() && passed {
+            let answers: Vec<_> = answers
+                .iter()
+                .filter_map(|(case, answer)| Some((*case, answer.as_ref()?)))
+                .collect();
+            document::write(&answers).expect("the document can be written");
+        }
+        passed
+    };
+    drop(universe);
+    if passed {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
+}
+
+fn holds(answer: Option<&Answer>) -> bool {
+    answer.is_some_and(|answer| answer.rows.iter().all(row::Row::holds))
+}
+
+/// Runs a case and prints its rows, separated by semicolons.
+fn run(case: &Case, world: &SimpleCommunicator) -> Option<Answer> {
+    let clock = Instant::now();
+    let outcome = catch_unwind(AssertUnwindSafe(|| (case.run)(world)));
+    let answer = match outcome {
+        Ok(Ok(answer)) => Some(answer),
+        Ok(Err(error)) => {
+            println!("{}: {error}", case.name);
+            None
+        }
+        Err(_) => None,
+    };
+    for row in answer.iter().flat_map(|answer| &answer.rows) {
+        println!("{}", row.line(case.name));
+    }
+    let verdict = if holds(answer.as_ref()) {
+        "ok"
+    } else {
+        "FAILED"
+    };
+    let seconds = clock.elapsed().as_secs_f64();
+    println!("test {} ... {verdict} ({seconds:.1} s)", case.name);
+    answer
+}

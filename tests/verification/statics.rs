@@ -1,0 +1,272 @@
+//! Problems without the benchmark's tools, solved statically.
+
+use std::f64::consts::PI;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+use petsc::Vector;
+use ssnp155::contact::contact_rule;
+use ssnp155::element::Quadrature;
+use ssnp155::mesh::SheetMesh;
+use ssnp155::run::StaticPath;
+use ssnp155::system::{
+    ContactPointSample, Factor, Measures, NodalValue, NodeSample, Problem, System, Tool,
+};
+use ssnp155::tool::{Motion, Piece, Profile};
+
+use crate::flow::Constants;
+use crate::row::Result;
+
+/// A problem without supports, loads, tools and density.
+pub fn problem(mesh: SheetMesh, constants: &Constants, quadrature: Quadrature) -> Problem {
+    Problem {
+        mesh,
+        material: constants.material(),
+        young_modulus: constants.young,
+        density: 0.0,
+        quadrature,
+        supports: Vec::new(),
+        loads: Vec::new(),
+        contact_samples: Vec::new(),
+        contact_compliance: 0.0,
+        friction_coefficient: 0.0,
+        friction_compliance: 0.0,
+        lower_tool: None,
+        upper_tool: None,
+        whole_sheet: 1.0,
+    }
+}
+
+/// Gives the problem `points` contact points per edge and the tool `lower` below.
+pub fn rest_on(problem: &mut Problem, lower: Profile, points: usize) {
+    problem.contact_samples = contact_rule(points);
+    problem.lower_tool = Some(fixed(lower));
+}
+
+/// A tool that does not move.
+pub fn fixed(profile: Profile) -> Arc<Tool> {
+    let motion = Motion::Fixed;
+    Arc::new(Tool { profile, motion })
+}
+
+/// The horizontal line at height `y`, free above.
+pub fn flat(y: f64) -> Profile {
+    Profile::new(vec![Piece::Segment {
+        start: [-1.0, y],
+        end: [1.0, y],
+    }])
+}
+
+/// A drum of `radius` around the origin, free outside; its open part points down.
+pub fn drum(radius: f64) -> Profile {
+    Profile::new(vec![Piece::Arc {
+        centre: [0.0, 0.0],
+        radius,
+        from: 1.4 * PI,
+        to: -0.4 * PI,
+    }])
+}
+
+/// A factor equal to time.
+pub fn with_time() -> Factor {
+    Factor(vec![(0.0, 0.0), (1e9, 1e9)])
+}
+
+/// A prescribed displacement or load that grows with time.
+pub fn growing(node: usize, component: usize, value: f64) -> NodalValue {
+    NodalValue {
+        node,
+        component,
+        value,
+        factor: with_time(),
+    }
+}
+
+/// A displacement held at zero.
+pub fn held(node: usize, component: usize) -> NodalValue {
+    NodalValue {
+        node,
+        component,
+        value: 0.0,
+        factor: Factor(Vec::new()),
+    }
+}
+
+/// Nodes at which `on` holds.
+pub fn nodes_where(mesh: &SheetMesh, on: impl Fn([f64; 2]) -> bool) -> Vec<usize> {
+    (0..mesh.nodes.len())
+        .filter(|&n| on(mesh.nodes[n]))
+        .collect()
+}
+
+/// Sides of the rectangle an undistorted mesh covers, as edges of left, right and middle node.
+pub fn side_edges(mesh: &SheetMesh, side: Side) -> Vec<[usize; 3]> {
+    let (nx, ny) = (mesh.nx, mesh.ny);
+    let (elements, [a, b, mid]): (Vec<usize>, [usize; 3]) = match side {
+        Side::Left => ((0..ny).map(|j| j * nx).collect(), [0, 3, 7]),
+        Side::Right => ((0..ny).map(|j| j * nx + nx - 1).collect(), [1, 2, 5]),
+        Side::Top => (((ny - 1) * nx..ny * nx).collect(), [3, 2, 6]),
+    };
+    elements
+        .into_iter()
+        .map(|e| [a, b, mid].map(|local| mesh.elements[e][local]))
+        .collect()
+}
+
+/// A side of the mesh.
+#[derive(Clone, Copy)]
+pub enum Side {
+    Left,
+    Right,
+    Top,
+}
+
+/// Consistent nodal loads of a dead traction (N per mm of width and mm of edge) on a side with straight edges.
+pub fn traction(
+    mesh: &SheetMesh,
+    side: Side,
+    value: impl Fn([f64; 2]) -> [f64; 2],
+    factor: &Factor,
+) -> Vec<NodalValue> {
+    let mut loads = Vec::new();
+    for edge in side_edges(mesh, side) {
+        let x = edge.map(|n| mesh.nodes[n]);
+        let length = (x[1][0] - x[0][0]).hypot(x[1][1] - x[0][1]);
+        for (xi, weight) in [(-0.6_f64.sqrt(), 5.0), (0.0, 8.0), (0.6_f64.sqrt(), 5.0)] {
+            let n = ssnp155::element::edge_shape(xi);
+            let at = [0, 1].map(|k| (0..3).map(|a| n[a] * x[a][k]).sum());
+            let t = value(at);
+            for (a, &node) in edge.iter().enumerate() {
+                for (component, t) in t.into_iter().enumerate() {
+                    loads.push(NodalValue {
+                        node,
+                        component,
+                        value: t * n[a] * 0.5 * length * weight / 9.0,
+                        factor: factor.clone(),
+                    });
+                }
+            }
+        }
+    }
+    loads
+}
+
+/// How contact points start.
+#[derive(Clone, Copy)]
+pub enum Touching {
+    /// All closed points carry.
+    All,
+    /// Of the closed points, the one with the smallest x.
+    Innermost,
+}
+
+/// A static solution, time by time.
+pub struct Statics {
+    pub system: Rc<System>,
+    pub path: StaticPath,
+    time: f64,
+}
+
+impl Statics {
+    /// Starts from rest. `tolerance`: norm of the residual of a converged solve, mm.
+    pub fn new(
+        world: &SimpleCommunicator,
+        problem: Problem,
+        touching: Touching,
+        tolerance: f64,
+    ) -> Result<Self> {
+        petsc::options::set("snes_atol", &tolerance.to_string())?;
+        let system = Rc::new(System::new(problem, world.duplicate())?);
+        let start = start_unknowns(&system, touching)?;
+        Ok(Self {
+            path: StaticPath::new(Rc::clone(&system), start)?,
+            system,
+            time: 0.0,
+        })
+    }
+
+    /// Solves at time `t`; the case fails if that fails.
+    pub fn advance(&mut self, t: f64) -> Result<()> {
+        let reason = self.path.advance(t)?;
+        self.time = t;
+        if reason.is_converged() {
+            Ok(())
+        } else {
+            Err(format!("no solution at t = {t}: {reason:?}").into())
+        }
+    }
+
+    /// Unknowns: displacements node by node, then multipliers and gaps.
+    pub fn values(&self) -> Result<Vec<f64>> {
+        Ok(self.system.local_values(self.path.unknowns())?)
+    }
+
+    /// Displacement of a node.
+    pub fn displacement(&self, node: usize) -> Result<[f64; 2]> {
+        let values = self.values()?;
+        Ok([values[2 * node], values[2 * node + 1]])
+    }
+
+    /// Internal force at every node, N per mm of width.
+    pub fn internal_forces(&self) -> Result<Vec<[f64; 2]>> {
+        let values = self.values()?;
+        let mut forces = vec![0.0; values.len()];
+        let local = self.system.local();
+        local.add_internal_forces(&values, &mut forces)?;
+        let young = local.problem().young_modulus;
+        let count = local.problem().mesh.nodes.len();
+        Ok((0..count)
+            .map(|n| [young * forces[2 * n], young * forces[2 * n + 1]])
+            .collect())
+    }
+
+    /// Stresses and more at the nodes.
+    pub fn samples(&self) -> Result<Vec<NodeSample>> {
+        let values = self.values()?;
+        let sampler = self.system.local().field_sampler();
+        Ok(self.system.node_samples(&sampler, self.time, &values)?)
+    }
+
+    /// The contact points.
+    pub fn contacts(&self) -> Result<Vec<ContactPointSample>> {
+        let values = self.values()?;
+        Ok(self.system.local().contact_points(self.time, &values))
+    }
+
+    pub fn measures(&self) -> Result<Measures> {
+        Ok(self
+            .system
+            .measures(self.time, self.path.unknowns(), None)?)
+    }
+}
+
+/// Rest, with the gaps there are.
+pub fn start_unknowns(system: &System, touching: Touching) -> Result<Vector> {
+    /// A multiplier that says that a point carries, mm.
+    const CARRIES: f64 = 1e-9;
+    let mut unknowns = system.vector()?;
+    unknowns.set_all(0.0)?;
+    let local = system.local();
+    let points = local.contact_points(0.0, &vec![0.0; local.unknown_count()]);
+    let closed = |point: &ContactPointSample| point.gap < 1e-6;
+    let innermost = points
+        .iter()
+        .filter(|point| closed(point))
+        .map(|point| point.reference[0])
+        .fold(f64::INFINITY, f64::min);
+    let first = system.owned_displacements();
+    let mut write = unknowns.write()?;
+    for (k, point) in points.iter().enumerate() {
+        let carries = match touching {
+            Touching::All => closed(point),
+            Touching::Innermost => closed(point) && point.reference[0] <= innermost,
+        };
+        write[first + 2 * k] = if carries { CARRIES } else { 0.0 };
+        write[first + 2 * k + 1] = if closed(point) { 0.0 } else { point.gap };
+    }
+    drop(write);
+    drop(local);
+    Ok(unknowns)
+}
