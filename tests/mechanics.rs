@@ -3,6 +3,7 @@
 mod common;
 
 use common::{Noise, aluminium, small_problem};
+use ssnp155::contact::{ContactLocation, ContactRule};
 use ssnp155::element::{ElementForce, Quad8, Quadrature};
 use ssnp155::material::{PointState, VonMises};
 use ssnp155::mesh::partition;
@@ -57,6 +58,13 @@ fn deformed_states(kernel: &Quad8, u: &[[f64; 2]; 8], material: &VonMises) -> Ve
         })
         .collect()
 }
+
+/// Every way to place contact points.
+const LOCATIONS: [ContactLocation; 3] = [
+    ContactLocation::Points,
+    ContactLocation::Nodes,
+    ContactLocation::Closest,
+];
 
 #[test]
 fn the_element_tangent_agrees_with_central_differences() {
@@ -181,7 +189,6 @@ fn a_point_turned_over_is_refused() {
 /// Unknowns with plastic strain, contact on both tools, and open points.
 fn deformed_unknowns(problem: &Problem, seed: u64) -> (f64, Vec<f64>, Vec<f64>) {
     let partition = partition(&problem.mesh, 1).unwrap();
-    let points = problem.contact_samples.len();
     let numbering = Numbering::new(problem, &partition, 1);
     let mut noise = Noise::new(seed);
     let size = numbering.row_count(0);
@@ -194,8 +201,8 @@ fn deformed_unknowns(problem: &Problem, seed: u64) -> (f64, Vec<f64>, Vec<f64>) 
         acceleration[row] = 1e-3 * noise.next();
         acceleration[row + 1] = 1e-3 * noise.next();
     }
-    for &row in &numbering.edge_row {
-        for k in 0..points {
+    for (edge, &row) in numbering.edge_row.iter().enumerate() {
+        for k in 0..problem.contact_samples(edge).len() {
             global[row + 2 * k] = 1e-5 * (1.5 + noise.next());
             global[row + 2 * k + 1] = 0.01 * (1.5 + noise.next());
         }
@@ -212,7 +219,6 @@ fn assemble(
     a: &[f64],
     shift: f64,
 ) -> (Vec<f64>, Vec<f64>) {
-    let points = problem.contact_samples.len();
     let one = Numbering::new(problem, &vec![0; problem.mesh.elements.len()], 1);
     let parts = partition(&problem.mesh, ranks).unwrap();
     let many = Numbering::new(problem, &parts, ranks);
@@ -221,7 +227,8 @@ fn assemble(
     for (m, o) in many.node_row.iter().zip(&one.node_row) {
         (to_one[*m], to_one[m + 1]) = (*o, o + 1);
     }
-    for (m, o) in many.edge_row.iter().zip(&one.edge_row) {
+    for (edge, (m, o)) in many.edge_row.iter().zip(&one.edge_row).enumerate() {
+        let points = problem.contact_samples(edge).len();
         (0..2 * points).for_each(|k| to_one[m + k] = o + k);
     }
     let (mut residual, mut jacobian) = (vec![0.0; size], vec![0.0; size * size]);
@@ -248,12 +255,21 @@ fn assemble(
 
 #[test]
 fn the_full_jacobian_agrees_with_central_differences() {
-    let problem = small_problem(6, 2);
-    let (t, u, a) = deformed_unknowns(&problem, 11);
+    for location in LOCATIONS {
+        let mut problem = small_problem(6, 2);
+        problem.contact_rule = ContactRule::new(location, 3);
+        full_jacobian_agrees(&problem);
+        problem.friction_coefficient = 0.2;
+        full_jacobian_agrees(&problem);
+    }
+}
+
+fn full_jacobian_agrees(problem: &Problem) {
+    let (t, u, a) = deformed_unknowns(problem, 11);
     // With an acceleration that follows the displacement the shift is its slope.
     let shift = 2.5;
     let follow = |u: &[f64]| -> Vec<f64> { u.iter().zip(&a).map(|(u, a)| a + shift * u).collect() };
-    let (_, jacobian) = assemble(&problem, 1, t, &u, &follow(&u), shift);
+    let (_, jacobian) = assemble(problem, 1, t, &u, &follow(&u), shift);
     let size = u.len();
     let mut worst = 0.0_f64;
     for j in 0..size {
@@ -261,8 +277,8 @@ fn the_full_jacobian_agrees_with_central_differences() {
         let (mut plus, mut minus) = (u.clone(), u.clone());
         plus[j] += h;
         minus[j] -= h;
-        let (up, _) = assemble(&problem, 1, t, &plus, &follow(&plus), shift);
-        let (down, _) = assemble(&problem, 1, t, &minus, &follow(&minus), shift);
+        let (up, _) = assemble(problem, 1, t, &plus, &follow(&plus), shift);
+        let (down, _) = assemble(problem, 1, t, &minus, &follow(&minus), shift);
         for i in 0..size {
             let slope = (up[i] - down[i]) / (2.0 * h);
             worst = worst.max((jacobian[i * size + j] - slope).abs());
@@ -274,11 +290,18 @@ fn the_full_jacobian_agrees_with_central_differences() {
 
 #[test]
 fn assembly_does_not_depend_on_the_partition() {
-    let problem = small_problem(12, 3);
-    let (t, u, a) = deformed_unknowns(&problem, 13);
-    let (residual, jacobian) = assemble(&problem, 1, t, &u, &a, 2.5);
+    for location in LOCATIONS {
+        let mut problem = small_problem(12, 3);
+        problem.contact_rule = ContactRule::new(location, 3);
+        partition_does_not_matter(&problem);
+    }
+}
+
+fn partition_does_not_matter(problem: &Problem) {
+    let (t, u, a) = deformed_unknowns(problem, 13);
+    let (residual, jacobian) = assemble(problem, 1, t, &u, &a, 2.5);
     for ranks in [2, 3, 4] {
-        let (other_residual, other_jacobian) = assemble(&problem, ranks, t, &u, &a, 2.5);
+        let (other_residual, other_jacobian) = assemble(problem, ranks, t, &u, &a, 2.5);
         let differ = |x: &[f64], y: &[f64]| {
             let size = x.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
             x.iter()

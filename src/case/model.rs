@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::error::CaseError;
 use super::{geometry, table};
+use crate::contact::ContactLocation;
 use crate::element::Quadrature;
 use crate::material::Hardening;
 use crate::tool::PunchMotion;
@@ -144,6 +145,8 @@ pub struct Discretisation {
     pub ny: usize,
     /// Gauss rule of the elements.
     pub quadrature: Quadrature,
+    /// Where contact is looked for.
+    pub contact_location: ContactLocation,
     /// Contact points on each element edge of the sheet's surfaces.
     pub contact_points_per_edge: usize,
     /// Gap the tools' surface gives per contact pressure, mm/MPa.
@@ -177,6 +180,10 @@ pub struct Stepping {
     pub dt_min: f64,
     /// Greatest time step, ms.
     pub dt_max: f64,
+    /// Number of equal steps down; 0: as the solution allows.
+    pub fixed_steps_load: usize,
+    /// Number of equal steps back; 0: as the solution allows.
+    pub fixed_steps_unload: usize,
     /// Ways of the punch, going down, that a step ends at exactly, mm.
     pub report_strokes: Vec<f64>,
     /// Whether a solve starts from extrapolated displacements.
@@ -232,6 +239,7 @@ impl Case {
                 nx: table::SHEET_NX.read(options)?,
                 ny: table::SHEET_NY.read(options)?,
                 quadrature: table::QUADRATURE.read(options)?,
+                contact_location: table::CONTACT_LOCATION.read(options)?,
                 contact_points_per_edge: table::CONTACT_POINTS_PER_EDGE.read(options)?,
                 contact_compliance: table::CONTACT_COMPLIANCE.read(options)?,
                 penetration_limit: table::PENETRATION_LIMIT.read(options)?,
@@ -240,6 +248,8 @@ impl Case {
                 dt_initial: table::DT_INITIAL.read(options)?,
                 dt_min: table::DT_MIN.read(options)?,
                 dt_max: table::DT_MAX.read(options)?,
+                fixed_steps_load: table::FIXED_STEPS_LOAD.read(options)?,
+                fixed_steps_unload: table::FIXED_STEPS_UNLOAD.read(options)?,
                 report_strokes: table::REPORT_STROKES.read(options)?,
                 extrapolate: table::EXTRAPOLATE.read(options)?,
                 newton_tolerance: table::NEWTON_TOLERANCE.read(options)?,

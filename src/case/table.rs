@@ -8,6 +8,7 @@ use std::ops::Bound;
 use super::kind::{Choice, Flag, Integer, List, Path, Real};
 use super::model::Dynamics;
 use super::option::{Described, Group, Opt};
+use crate::contact::ContactLocation;
 use crate::element::Quadrature;
 
 /// The value of -hardening_file that means the table compiled into the program.
@@ -128,9 +129,21 @@ option_table! {
         meaning: "Gauss points per direction in an element; 2 is reduced integration of the quadratic element.",
         value: |case| case.discretisation.quadrature,
     }
+    CONTACT_LOCATION: Choice<ContactLocation> {
+        name: "contact_location", unit: "", default: "points", group: Group::Discretisation,
+        kind: Choice(&[
+            ("points", ContactLocation::Points),
+            ("nodes", ContactLocation::Nodes),
+            ("closest", ContactLocation::Closest),
+        ]),
+        meaning: "Contact at -contact_points_per_edge equally spaced points, at the nodes, or where each edge is closest to \
+                  the tool; docs/contact.md compares them.",
+        value: |case| case.discretisation.contact_location,
+    }
     CONTACT_POINTS_PER_EDGE: Integer {
         name: "contact_points_per_edge", unit: "", default: "6", group: Group::Discretisation, kind: Integer(1, 24),
-        meaning: "Contact points on each element edge of the sheet's surfaces; too few make the force a saw-tooth.",
+        meaning: "Contact points on each element edge of the sheet's surfaces; too few make the force a saw-tooth. With \
+                  -contact_location points.",
         value: |case| case.discretisation.contact_points_per_edge,
     }
     CONTACT_COMPLIANCE: Real {
@@ -159,6 +172,17 @@ option_table! {
         name: "dt_max", unit: "ms", default: "9", group: Group::Stepping, kind: Real::positive(1e9),
         meaning: "Longest time step.",
         value: |case| case.stepping.dt_max,
+    }
+    FIXED_STEPS_LOAD: Integer {
+        name: "fixed_steps_load", unit: "", default: "0", group: Group::Stepping, kind: Integer(0, 1_000_000),
+        meaning: "So many equal steps down, each cut only where its solve is refused and where a value is reported; 0 lets \
+                  the steps grow and shrink.",
+        value: |case| case.stepping.fixed_steps_load,
+    }
+    FIXED_STEPS_UNLOAD: Integer {
+        name: "fixed_steps_unload", unit: "", default: "0", group: Group::Stepping, kind: Integer(0, 1_000_000),
+        meaning: "The same for the way back.",
+        value: |case| case.stepping.fixed_steps_unload,
     }
     REPORT_STROKES: List {
         name: "report_strokes", unit: "mm", default: "1,2,5,8,10,12,15,16,18,20,22,24,26,28", group: Group::Stepping,

@@ -2,10 +2,12 @@
 //! Out: the point's share of the equilibrium, closure and complementarity equations with tangents.
 //! Never: other points, the tools' motion in time, PETSc or MPI.
 
+mod closest;
 mod law;
 mod rule;
 
+pub use closest::Drift;
 pub use law::{
     ContactLaw, ContactRows, ContactTangent, Friction, FrictionState, PointPosition, Traction,
 };
-pub use rule::{ContactSample, contact_rule};
+pub use rule::{ContactLocation, ContactRule, ContactSample};

@@ -21,7 +21,7 @@ pub struct Quad8 {
 pub struct ElementForce {
     /// Internal force, N per mm of width.
     pub force: [f64; DOFS],
-    /// Tangent stiffness, N/mm per mm of width; zero if it was not asked for.
+    /// Tangent stiffness, N/mm per mm of width; left alone if it was not asked for.
     pub stiffness: [[f64; DOFS]; DOFS],
 }
 
@@ -96,7 +96,10 @@ impl Quad8 {
         with_stiffness: bool,
         out: &mut ElementForce,
     ) -> Result<(), SinglePointFailure> {
-        *out = ElementForce::ZERO;
+        out.force = [0.0; DOFS];
+        if with_stiffness {
+            out.stiffness = [[0.0; DOFS]; DOFS];
+        }
         for (point, state) in states.iter().enumerate() {
             let (response, f, volume) = self.point_response(point, u, material, state)?;
             let gradients = spatial_gradients(&self.points[point].0, &f);

@@ -46,6 +46,14 @@ pub fn edge_shape(xi: f64) -> [f64; 3] {
     [0.5 * xi * (xi - 1.0), 0.5 * xi * (xi + 1.0), 1.0 - xi * xi]
 }
 
+/// Their first derivatives by ξ.
+pub fn edge_shape_slopes(xi: f64) -> [f64; 3] {
+    [xi - 0.5, xi + 0.5, -2.0 * xi]
+}
+
+/// Their second derivatives by ξ, the same everywhere.
+pub const EDGE_SHAPE_CURVATURES: [f64; 3] = [1.0, 1.0, -2.0];
+
 #[cfg(test)]
 mod tests {
     use super::*;

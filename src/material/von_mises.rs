@@ -153,7 +153,7 @@ impl PrincipalStrains {
     fn of(b: [f64; 3], b_zz: f64) -> Self {
         let half_sum = 0.5 * (b[0] + b[2]);
         let half_difference = 0.5 * (b[0] - b[2]);
-        let radius = half_difference.hypot(b[1]);
+        let radius = (half_difference * half_difference + b[1] * b[1]).sqrt();
         let axis = if radius > 0.0 {
             [half_difference / radius, b[1] / radius]
         } else {

@@ -19,6 +19,13 @@ const PETSC_DEFAULTS: &[(&str, &str)] = &[
     ("mat_mumps_icntl_7", "0"),
 ];
 
+/// The direct solver of the condensed system.
+const CONDENSED_DEFAULTS: &[(&str, &str)] = &[
+    ("condensed_pc_factor_mat_solver_type", "mumps"),
+    // METIS: the analysis is done once, so the fill counts.
+    ("condensed_mat_mumps_icntl_7", "5"),
+];
+
 /// Options that need the entries of the Jacobian even if our solve is used.
 const NEED_ENTRIES: &[&str] = &[
     "ksp_type",
@@ -44,6 +51,9 @@ impl LinearSolve {
                 options::set_default(name, value)?;
             }
             return Ok(Self { condensed: None });
+        }
+        for (name, value) in CONDENSED_DEFAULTS {
+            options::set_default(name, value)?;
         }
         let condensed = CondensedSolve::new(Rc::clone(system))?;
         Ok(Self {

@@ -183,6 +183,14 @@ fn landmarks(case: &Case) -> Result<Vec<f64>, CaseError> {
         .map(|&depth| motion.time_at_depth(depth))
         .collect();
     times.extend([motion.time_load, motion.end()]);
+    let equal = |start: f64, end: f64, count: usize| {
+        (1..count).map(move |k| start + (end - start) * k as f64 / count as f64)
+    };
+    times.extend(equal(0.0, motion.time_load, case.stepping.fixed_steps_load));
+    if motion.end() > motion.time_load {
+        let count = case.stepping.fixed_steps_unload;
+        times.extend(equal(motion.time_load, motion.end(), count));
+    }
     times.sort_by(f64::total_cmp);
     times.dedup();
     Ok(times)

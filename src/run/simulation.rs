@@ -21,7 +21,8 @@ use crate::output::StepRecord;
 use crate::system::{FieldSampler, System};
 use crate::tool::PunchMotion;
 
-/// Largest imbalance of a converged solve as a share of the last punch force.
+/// Largest imbalance and largest pull of a contact point after a converged solve, as a share of the
+/// last punch force.
 const BALANCE_SHARE: f64 = 3e-7;
 /// Below this residual norm (mm) rounding may be all that is left.
 const BALANCE_FLOOR: f64 = 1e-12;
@@ -234,7 +235,7 @@ impl Simulation {
     }
 
     /// A small residual is not enough: its vertical sum is the imbalance of the tools' forces, which
-    /// must be small against those.
+    /// must be small against those; and a point about to open may pull within the tolerance.
     fn balanced(
         &self,
         snes: &SnesRef,
@@ -245,7 +246,8 @@ impl Simulation {
         }
         let imbalance = self.system.vertical_sum(snes.function()?)?;
         let limit = BALANCE_SHARE * self.ledger.borrow().force().abs().max(LEAST_FORCE);
-        Ok(if imbalance.abs() <= limit {
+        let pull = self.system.strongest_pull(snes.solution()?)?;
+        Ok(if imbalance.abs() <= limit && pull <= limit {
             check.default
         } else {
             SnesReason::Iterating

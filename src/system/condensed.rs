@@ -7,7 +7,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use mpi::traits::Communicator;
-use petsc::{Ksp, KspRef, Matrix, Scatter, Vector, VectorRef};
+use petsc::{Ksp, Matrix, Scatter, Vector, VectorRef};
 
 use super::System;
 use super::elimination::Elimination;
@@ -126,26 +126,13 @@ impl CondensedSolve {
     }
 }
 
-/// The solver of the condensed system, by default PETSc's own direct one, which is several times
-/// faster on systems of this size than packages made for large ones. It runs on one rank: with
-/// several, each gathers and factorises the whole matrix.
+/// The solver of the condensed system: a direct one, whose package and ordering the options choose.
 fn solver<C: Communicator>(comm: &C, matrix: &Matrix, symmetric: bool) -> petsc::Result<Ksp> {
-    let direct = |solver: &mut KspRef| {
-        solver.set_type("preonly")?;
-        solver.set_preconditioner(if symmetric { "cholesky" } else { "lu" })?;
-        // The sheet is long and thin: a narrow band fills least.
-        solver.set_ordering("rcm")
-    };
     let mut solver = Ksp::new(comm)?;
     solver.set_options_prefix(PREFIX)?;
     solver.set_operator(matrix)?;
-    if comm.size() == 1 {
-        direct(&mut solver)?;
-    } else {
-        solver.set_type("preonly")?;
-        solver.set_preconditioner("redundant")?;
-        direct(solver.redundant_mut()?)?;
-    }
+    solver.set_type("preonly")?;
+    solver.set_preconditioner(if symmetric { "cholesky" } else { "lu" })?;
     solver.set_from_options()?;
     Ok(solver)
 }

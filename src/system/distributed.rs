@@ -262,6 +262,24 @@ impl System {
         Ok(problem.whole_sheet * problem.young_modulus * sum)
     }
 
+    /// Strongest pull of a contact point among the unknowns `u` as a force of the whole sheet, N; 0 if
+    /// none pulls. Collective.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn strongest_pull(&self, u: &VectorRef) -> petsc::Result<f64> {
+        let first = self.owned_displacements();
+        let mine = u.read()?[first..]
+            .chunks_exact(UNKNOWNS_PER_POINT)
+            .fold(0.0_f64, |pull, point| pull.max(-point[0]));
+        let mut pull = 0.0;
+        self.comm
+            .all_reduce_into(&mine, &mut pull, SystemOperation::max());
+        let local = self.local();
+        let problem = local.problem();
+        Ok(problem.whole_sheet * problem.young_modulus * pull)
+    }
+
     /// Largest displacement among the unknowns `u`, mm. Collective.
     ///
     /// # Errors

@@ -9,9 +9,8 @@
 use super::LocalSystem;
 use super::local::LocalContact;
 use super::pattern::{CONTACT_ENTRIES, CONTACT_LAYOUT as AT, ELEMENT_ENTRIES};
-use crate::contact::FrictionState;
+use crate::contact::{FrictionState, PointPosition};
 use crate::element::{ElementForce, SinglePointFailure};
-use crate::tool::Distance;
 
 /// An element that cannot be evaluated.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -89,9 +88,9 @@ impl LocalSystem {
     fn add_contact(&self, t: f64, u: &[f64], out: &mut [f64]) {
         for (point, contact) in self.contacts.iter().enumerate() {
             let m = self.multiplier(point);
-            let distance = self.contact_distance(contact, t, u);
-            let traction = contact.law.traction(&distance, u[m], &contact.state);
-            let rows = contact.law.rows(&distance, u[m], u[m + 1], &traction);
+            let position = self.contact_position(contact, t, u);
+            let traction = contact.law.traction(&position, u[m], &contact.state);
+            let rows = contact.law.rows(&position, u[m], u[m + 1], &traction);
             for (i, force) in rows.force.iter().enumerate() {
                 out[2 * contact.nodes[i / 2] + i % 2] += force;
             }
@@ -137,9 +136,9 @@ impl LocalSystem {
     fn contact_jacobian(&self, t: f64, u: &[f64], point: usize, out: &mut [f64]) {
         let contact = &self.contacts[point];
         let multiplier = u[self.multiplier(point)];
-        let distance = self.contact_distance(contact, t, u);
-        let traction = contact.law.traction(&distance, multiplier, &contact.state);
-        let tangent = contact.law.tangent(&distance, multiplier, &traction);
+        let position = self.contact_position(contact, t, u);
+        let traction = contact.law.traction(&position, multiplier, &contact.state);
+        let tangent = contact.law.tangent(&position, multiplier, &traction);
         out[AT.force_u].copy_from_slice(tangent.force_u.as_flattened());
         out[AT.force_multiplier].copy_from_slice(&tangent.force_multiplier);
         out[AT.closure_u].copy_from_slice(&tangent.closure_u);
@@ -183,11 +182,14 @@ impl LocalSystem {
         }
     }
 
-    /// Distance of a contact point to its tool at time `t`.
-    pub(super) fn contact_distance(&self, contact: &LocalContact, t: f64, u: &[f64]) -> Distance {
-        contact
-            .position(&self.edge_positions(contact, u), t)
-            .distance
+    /// Where a contact point is at time `t`, and how far from its tool.
+    pub(super) fn contact_position(
+        &self,
+        contact: &LocalContact,
+        t: f64,
+        u: &[f64],
+    ) -> PointPosition {
+        contact.position(&self.edge_positions(contact, u), t)
     }
 
     /// Takes the states at time `t` and unknowns `u` as history. Call it once per accepted step.
@@ -211,17 +213,19 @@ impl LocalSystem {
         for point in 0..self.contacts.len() {
             let multiplier = u[self.multiplier(point)];
             let contact = &self.contacts[point];
-            let distance = self.contact_distance(contact, t, u);
+            let nodes = self.edge_positions(contact, u);
+            let position = contact.position(&nodes, t);
             let traction = contact
                 .law
-                .traction(&distance, multiplier, &contact.state)
+                .traction(&position, multiplier, &contact.state)
                 .value;
-            let slip = distance.arc_length - contact.state.arc_length;
             let mean_force = 0.5 * self.problem.young_modulus * (contact.state.traction + traction);
-            self.friction_work -= mean_force * slip;
+            self.friction_work -= mean_force * position.slip;
+            let shift = contact.tool.motion.shift(t);
             self.contacts[point].state = FrictionState {
                 traction,
-                arc_length: distance.arc_length,
+                arc_length: position.distance.arc_length,
+                nodes: nodes.map(|x| [x[0] - shift[0], x[1] - shift[1]]),
             };
         }
     }

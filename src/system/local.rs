@@ -26,6 +26,8 @@ pub(super) struct LocalContact {
     pub law: ContactLaw,
     /// Length of sheet it stands for, mm.
     pub length: f64,
+    /// Whether it is the first point of its edge.
+    pub first_of_edge: bool,
     /// Committed friction.
     pub state: FrictionState,
 }
@@ -34,8 +36,12 @@ impl LocalContact {
     /// Position of the point and its distance to its tool at time `t` (ms), for the current positions
     /// of its edge's nodes.
     pub fn position(&self, nodes: &[[f64; 2]; 3], t: f64) -> PointPosition {
-        self.law
-            .position(nodes, &self.tool.profile, self.tool.motion.shift(t))
+        self.law.position(
+            nodes,
+            &self.tool.profile,
+            self.tool.motion.shift(t),
+            &self.state,
+        )
     }
 
     /// Whether the committed friction is at its limit for this multiplier.
@@ -140,7 +146,7 @@ impl LocalSystem {
             let edge_nodes = mesh.edge_nodes(edge);
             let [left, right] = [mesh.nodes[edge_nodes[0]], mesh.nodes[edge_nodes[1]]];
             let edge_length = (right[0] - left[0]).hypot(right[1] - left[1]);
-            for (k, sample) in problem.contact_samples.iter().enumerate() {
+            for (k, sample) in problem.contact_samples(index).iter().enumerate() {
                 let length = sample.weight * edge_length;
                 contacts.push(LocalContact {
                     side: edge.side,
@@ -149,6 +155,7 @@ impl LocalSystem {
                     state: starting_friction(&problem, tool, edge_nodes, sample),
                     law: ContactLaw {
                         shape: sample.shape,
+                        moves_on: sample.moves.then_some(edge_length),
                         give: problem.contact_compliance * problem.young_modulus / length,
                         friction: (problem.friction_coefficient > 0.0).then(|| Friction {
                             coefficient: problem.friction_coefficient,
@@ -156,6 +163,7 @@ impl LocalSystem {
                         }),
                     },
                     length,
+                    first_of_edge: k == 0,
                 });
                 let row = numbering.edge_row[index] + UNKNOWNS_PER_POINT * k;
                 rows.extend([row as i32, row as i32 + 1]);
@@ -250,5 +258,6 @@ fn starting_friction(
     FrictionState {
         traction: 0.0,
         arc_length: tool.profile.distance(x).arc_length,
+        nodes,
     }
 }

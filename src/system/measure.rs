@@ -7,8 +7,8 @@ use crate::mesh::SurfaceSide;
 /// The arm's fit uses the outer sixth of the half sheet: beyond the die's shoulder it is free of
 /// stress, so it is straight unless it yielded on its way.
 const ARM_START: f64 = 5.0 / 6.0;
-/// Penetration is looked for this many times denser than the contact points.
-const PENETRATION_PROBES_PER_POINT: usize = 2;
+/// Penetration is looked for at so many equal steps along each edge: between contact points, too.
+const PENETRATION_PROBES: usize = 48;
 
 /// One rank's contribution: numbers that add up over the ranks, and numbers of which the largest
 /// counts.
@@ -112,9 +112,8 @@ impl LocalSystem {
             maxima[1] = maxima[1].max(-force);
             maxima[2] = maxima[2].max(force);
             maxima[3] = maxima[3].max((force * gap).abs());
-            let per_edge = self.problem.contact_samples.len();
-            if point % per_edge == 0 {
-                let probes = PENETRATION_PROBES_PER_POINT * per_edge;
+            if contact.first_of_edge {
+                let probes = PENETRATION_PROBES;
                 for k in 0..=probes {
                     let shape = crate::element::edge_shape(2.0 * k as f64 / probes as f64 - 1.0);
                     let x = [0, 1].map(|i| (0..3).map(|b| shape[b] * nodes[b][i]).sum::<f64>());

@@ -35,7 +35,7 @@ impl Numbering {
             }
         }
         let edge_unknowns = |edge: usize| match problem.tool(mesh.surface[edge].side) {
-            Some(_) => UNKNOWNS_PER_POINT * problem.contact_samples.len(),
+            Some(_) => UNKNOWNS_PER_POINT * problem.contact_samples(edge).len(),
             None => 0,
         };
         let edge_owner = |edge: usize| partition[mesh.surface[edge].element];
@@ -120,9 +120,9 @@ mod tests {
             let owner = numbering.node_owner[node];
             assert!((numbering.rank_rows[owner]..numbering.rank_rows[owner + 1]).contains(&row));
         }
-        for (edge, &row) in problem.mesh.surface.iter().zip(&numbering.edge_row) {
-            if problem.tool(edge.side).is_some() {
-                let unknowns = UNKNOWNS_PER_POINT * problem.contact_samples.len();
+        for (index, &row) in numbering.edge_row.iter().enumerate() {
+            if problem.tool(problem.mesh.surface[index].side).is_some() {
+                let unknowns = UNKNOWNS_PER_POINT * problem.contact_samples(index).len();
                 (row..row + unknowns).for_each(&mut mark);
             }
         }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::case::{Case, Dynamics, Tools};
-use crate::contact::{ContactSample, contact_rule};
+use crate::contact::{ContactRule, ContactSample};
 use crate::element::Quadrature;
 use crate::material::VonMises;
 use crate::mesh::{SheetMesh, SurfaceSide};
@@ -26,8 +26,8 @@ pub struct Problem {
     pub supports: Vec<NodalValue>,
     /// Dead loads, N per mm of width.
     pub loads: Vec<NodalValue>,
-    /// Contact points of the reference edge.
-    pub contact_samples: Vec<ContactSample>,
+    /// Where the faces' edges have contact points.
+    pub contact_rule: ContactRule,
     /// Give of the surface under unit pressure, mm/MPa.
     pub contact_compliance: f64,
     /// Coulomb's coefficient of friction.
@@ -126,7 +126,10 @@ impl Problem {
             young_modulus: case.material.young_modulus,
             density,
             quadrature: divisions.quadrature,
-            contact_samples: contact_rule(divisions.contact_points_per_edge),
+            contact_rule: ContactRule::new(
+                divisions.contact_location,
+                divisions.contact_points_per_edge,
+            ),
             contact_compliance: divisions.contact_compliance,
             friction_coefficient: case.friction.coefficient,
             friction_compliance: case.friction.compliance,
@@ -140,6 +143,13 @@ impl Problem {
             })),
             whole_sheet: sheet.force_factor(),
         }
+    }
+
+    /// Contact points that belong to a surface edge of the mesh.
+    pub fn contact_samples(&self, edge: usize) -> Vec<ContactSample> {
+        let along = edge % self.mesh.nx;
+        self.contact_rule
+            .samples(along == 0, along + 1 == self.mesh.nx)
     }
 
     /// The tool a face of the sheet can touch.

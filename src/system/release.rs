@@ -37,7 +37,6 @@ impl System {
         });
         let mut problem = Problem {
             loads: loads.collect(),
-            contact_samples: Vec::new(),
             lower_tool: None,
             upper_tool: None,
             density: 0.0,

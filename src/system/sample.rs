@@ -14,9 +14,9 @@ pub(super) const NODE_CHANNELS: usize = 8;
 /// What is known at a contact point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPointSample {
-    /// Position in the reference configuration, mm.
+    /// Position in the reference configuration, mm; of a moving point the middle of its edge.
     pub reference: [f64; 2],
-    /// Displacement, mm.
+    /// From there to where it is now, mm.
     pub displacement: [f64; 2],
     /// Contact pressure, MPa.
     pub pressure: f64,
@@ -67,7 +67,7 @@ impl System {
         t: f64,
         u: &[f64],
     ) -> Result<Vec<NodeSample>, SystemError> {
-        let mut sums = self.local().nodal_sums(sampler, u)?;
+        let mut sums = self.local().nodal_sums(sampler, t, u)?;
         let mut pairs = vec![0.0; u.len()];
         for first in (0..NODE_CHANNELS).step_by(2) {
             pairs.fill(0.0);
@@ -150,10 +150,11 @@ impl LocalSystem {
         FieldSampler { weights }
     }
 
-    /// This rank's nodal sums at unknowns `u` (local), [`NODE_CHANNELS`] per local node.
+    /// This rank's nodal sums at time `t` (ms) and unknowns `u` (local), [`NODE_CHANNELS`] per local node.
     pub(super) fn nodal_sums(
         &self,
         sampler: &FieldSampler,
+        t: f64,
         u: &[f64],
     ) -> Result<Vec<[f64; NODE_CHANNELS]>, ElementFailure> {
         let mut sums = vec![[0.0; NODE_CHANNELS]; self.nodes.len()];
@@ -178,7 +179,8 @@ impl LocalSystem {
         }
         for (point, contact) in self.contacts.iter().enumerate() {
             let force = self.problem.young_modulus * u[self.multiplier(point)];
-            let share = half_edge_hats(&contact.law.shape);
+            let share =
+                half_edge_hats(&contact.position(&self.edge_positions(contact, u), t).shape);
             for (&node, share) in contact.nodes.iter().zip(share) {
                 sums[node][6] += share * force;
                 sums[node][7] += share * contact.length;
@@ -219,8 +221,8 @@ impl LocalSystem {
             if u[m + 1] > 0.0 || u[m] <= 0.0 {
                 return 0;
             }
-            let distance = self.contact_distance(contact, t, u);
-            let traction = contact.law.traction(&distance, u[m], &contact.state);
+            let position = self.contact_position(contact, t, u);
+            let traction = contact.law.traction(&position, u[m], &contact.state);
             match traction.by_multiplier {
                 0.0 => 1,
                 slope if slope > 0.0 => 2,

@@ -51,6 +51,8 @@ pub struct Profile {
     pieces: Vec<Piece>,
     /// Arc length at the start of each piece, mm.
     arc_starts: Vec<f64>,
+    /// Both ends of each piece.
+    ends: Vec<[End; 2]>,
 }
 
 /// Below this distance from an arc's centre the direction to the foot point is arbitrary, mm.
@@ -115,7 +117,7 @@ impl Piece {
                 to,
             } => {
                 let from_centre = [x[0] - centre[0], x[1] - centre[1]];
-                let r = from_centre[0].hypot(from_centre[1]);
+                let r = dot(from_centre, from_centre).sqrt();
                 let turn = (to - from).signum();
                 let (angle, radial, r) = if r < CENTRE_RADIUS {
                     let middle = 0.5 * (from + to);
@@ -135,9 +137,8 @@ impl Piece {
         }
     }
 
-    /// Distance to an end point of the piece, on the side told by the piece's own normal there.
-    fn end_distance(&self, x: [f64; 2], share: f64) -> Distance {
-        let end = self.at(share);
+    /// Its end at `share` 0 or 1 of its length.
+    fn end(&self, share: f64) -> End {
         let tangent = match *self {
             Piece::Segment { start, end } => {
                 let length = self.length();
@@ -149,16 +150,39 @@ impl Piece {
                 [-turn * angle.sin(), turn * angle.cos()]
             }
         };
-        let normal = [-tangent[1], tangent[0]];
-        let away = [x[0] - end[0], x[1] - end[1]];
-        let r = away[0].hypot(away[1]).max(CENTRE_RADIUS);
-        let side = if dot(away, normal) >= 0.0 { 1.0 } else { -1.0 };
+        End {
+            x: self.at(share),
+            normal: [-tangent[1], tangent[0]],
+            arc_length: share * self.length(),
+        }
+    }
+}
+
+/// An end point of a piece.
+#[derive(Clone, Copy, Debug)]
+struct End {
+    x: [f64; 2],
+    normal: [f64; 2],
+    /// From the start of the piece, mm.
+    arc_length: f64,
+}
+
+impl End {
+    /// Distance to the end point, on the side told by the piece's own normal there.
+    fn distance(&self, x: [f64; 2]) -> Distance {
+        let away = [x[0] - self.x[0], x[1] - self.x[1]];
+        let r = dot(away, away).sqrt().max(CENTRE_RADIUS);
+        let side = if dot(away, self.normal) >= 0.0 {
+            1.0
+        } else {
+            -1.0
+        };
         let radial = [side * away[0] / r, side * away[1] / r];
         Distance {
             value: side * r,
             gradient: radial,
             hessian: tangential_projector(radial, side / r),
-            arc_length: share * self.length(),
+            arc_length: self.arc_length,
             arc_gradient: [0.0; 2],
             arc_hessian: [0.0; 3],
         }
@@ -212,7 +236,11 @@ impl Profile {
                 Some(start)
             })
             .collect();
-        Self { pieces, arc_starts }
+        Self {
+            ends: pieces.iter().map(|p| [p.end(0.0), p.end(1.0)]).collect(),
+            pieces,
+            arc_starts,
+        }
     }
 
     /// Signed distance of `x` (mm) to the closest piece.
@@ -230,8 +258,9 @@ impl Profile {
             match piece.distance(x, i == 0, i == last) {
                 Some(distance) => consider(distance, start),
                 None => {
-                    consider(piece.end_distance(x, 0.0), start);
-                    consider(piece.end_distance(x, 1.0), start);
+                    for end in &self.ends[i] {
+                        consider(end.distance(x), start);
+                    }
                 }
             }
         }

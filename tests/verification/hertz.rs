@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use mpi::topology::SimpleCommunicator;
-use ssnp155::contact::contact_rule;
+use ssnp155::contact::{ContactLocation, ContactRule};
 use ssnp155::element::Quadrature;
 use ssnp155::mesh::SheetMesh;
 use ssnp155::system::Tool;
@@ -66,7 +66,7 @@ fn cylinder(world: &SimpleCommunicator) -> Result<Answer> {
     for node in nodes_where(&mesh, |x| x[1] == 0.0) {
         block.supports.extend([held(node, 0), held(node, 1)]);
     }
-    block.contact_samples = contact_rule(6);
+    block.contact_rule = ContactRule::new(ContactLocation::Points, 6);
     block.contact_compliance = COMPLIANCE;
     block.upper_tool = Some(Arc::new(Tool {
         profile: punch(RADIUS, SIZE, RADIUS),

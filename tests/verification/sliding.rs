@@ -1,7 +1,7 @@
 //! Blocks on a flat tool with friction: stick, slip and reversal.
 
 use mpi::topology::SimpleCommunicator;
-use ssnp155::contact::contact_rule;
+use ssnp155::contact::{ContactLocation, ContactRule};
 use ssnp155::element::Quadrature;
 use ssnp155::mesh::SheetMesh;
 use ssnp155::system::{Factor, NodalValue, Problem};
@@ -159,7 +159,8 @@ fn bar(world: &SimpleCommunicator) -> Result<Answer> {
         let internal: f64 = left.iter().map(|&n| forces[n][0]).sum();
         // The left corner also carries its share of the first edge's friction.
         let edge = LENGTH / mesh.nx as f64;
-        let friction: f64 = contact_rule(POINTS)
+        let friction: f64 = ContactRule::new(ContactLocation::Points, POINTS)
+            .samples(false, false)
             .iter()
             .zip(statics.contacts()?)
             .map(|(sample, point)| sample.shape[0] * sample.weight * edge * point.friction)

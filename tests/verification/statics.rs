@@ -7,7 +7,7 @@ use std::sync::Arc;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 use petsc::Vector;
-use ssnp155::contact::contact_rule;
+use ssnp155::contact::{ContactLocation, ContactRule};
 use ssnp155::element::Quadrature;
 use ssnp155::mesh::SheetMesh;
 use ssnp155::run::StaticPath;
@@ -29,7 +29,7 @@ pub fn problem(mesh: SheetMesh, constants: &Constants, quadrature: Quadrature) -
         quadrature,
         supports: Vec::new(),
         loads: Vec::new(),
-        contact_samples: Vec::new(),
+        contact_rule: ContactRule::new(ContactLocation::Points, 1),
         contact_compliance: 0.0,
         friction_coefficient: 0.0,
         friction_compliance: 0.0,
@@ -41,7 +41,7 @@ pub fn problem(mesh: SheetMesh, constants: &Constants, quadrature: Quadrature) -
 
 /// Gives the problem `points` contact points per edge and the tool `lower` below.
 pub fn rest_on(problem: &mut Problem, lower: Profile, points: usize) {
-    problem.contact_samples = contact_rule(points);
+    problem.contact_rule = ContactRule::new(ContactLocation::Points, points);
     problem.lower_tool = Some(fixed(lower));
 }
 
