@@ -155,7 +155,7 @@ fn manufactured(world: &SimpleCommunicator) -> Result<Answer> {
             let now = errors(world, n, quadrature)?;
             if let Some(last) = last {
                 for (k, (name, order, tolerance)) in
-                    [("L2 norm", 3.0, 0.15), ("energy norm", 2.0, 0.15)]
+                    [("L2 norm", 3.0, 0.1), ("energy norm", 2.0, 0.1)]
                         .into_iter()
                         .enumerate()
                 {

@@ -55,7 +55,7 @@ fn section(page: &mut String, case: &Case, answer: &Answer) -> Result<()> {
 fn table_line(row: &Row) -> String {
     let kind = if row.relative { "" } else { " abs" };
     format!(
-        "| {} | {} | {} | {}{kind} | {:.0e}{kind} | {} |",
+        "| {} | {} | {} | {}{kind} | {:.1e}{kind} | {} |",
         row.quantity,
         number(row.computed),
         number(row.reference),

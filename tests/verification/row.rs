@@ -102,7 +102,7 @@ impl Row {
     /// The row for a machine.
     pub fn line(&self, case: &str) -> String {
         format!(
-            "{case};{};{:e};{:e};{:.2e};{:.0e};{};{}",
+            "{case};{};{:e};{:e};{:.2e};{:.1e};{};{}",
             self.quantity,
             self.computed,
             self.reference,

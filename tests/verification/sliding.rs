@@ -77,7 +77,7 @@ fn cycle(world: &SimpleCommunicator) -> Result<Answer> {
             let slips = exact.abs() > limit * (1.0 - 1e-9);
             wrong += f64::from(u8::from(point.slips != slips));
         }
-        if [2, 10, 12, 30, 32, 50].contains(&step) {
+        if [2, 10, 11, 30, 31, 50].contains(&step) {
             let quantity = format!(
                 "friction traction on the block at {:.3} mm, step {step}, MPa",
                 moved.at(t)
