@@ -16,4 +16,4 @@ source scripts/environment.sh
 echo "build: cargo build --release"
 cargo build --release --locked
 echo "run: mpirun -n $ranks ssnp155 $*"
-exec mpirun -n "$ranks" target/release/ssnp155 "$@"
+exec mpirun -n "$ranks" "${CARGO_TARGET_DIR:-target}/release/ssnp155" "$@"

@@ -201,7 +201,7 @@ option_table! {
         value: |case| case.stepping.newton_tolerance,
     }
     NEWTON_MAX_ITERATIONS: Integer {
-        name: "newton_max_iterations", unit: "", default: "30", group: Group::Stepping, kind: Integer(1, 1000),
+        name: "newton_max_iterations", unit: "", default: "20", group: Group::Stepping, kind: Integer(1, 1000),
         meaning: "A solve that needs more iterations is refused and done again with a shorter step.",
         value: |case| case.stepping.newton_max_iterations,
     }

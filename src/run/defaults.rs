@@ -9,7 +9,7 @@ use super::RunError;
 use crate::case::Case;
 
 /// By how much a step shrinks when its solve is refused.
-pub(super) const CUT_BACK: f64 = 0.25;
+pub(super) const CUT_BACK: f64 = 0.4;
 
 /// Most refused solves of one step; the least step ends them long before.
 pub(super) const MOST_REJECTIONS: i32 = 1000;

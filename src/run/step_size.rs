@@ -8,7 +8,7 @@ const HARD_ITERATIONS: usize = 20;
 /// Factor of growth and shrinkage.
 const FACTOR: f64 = 1.5;
 /// Steps without growth after a refused solve.
-const CALM_STEPS: usize = 1;
+const CALM_STEPS: usize = 2;
 /// Two times closer than this share of the whole are the same.
 const SAME_TIME: f64 = 1e-10;
 
@@ -122,7 +122,8 @@ mod tests {
         let mut control = StepControl::new(8.0, 9.0, vec![1000.0]);
         assert_eq!(control.accepted(2.0, 2.0, 6), 2.0);
         assert_eq!(control.accepted(4.0, 2.0, 6), 2.0);
-        assert_eq!(control.accepted(6.0, 2.0, 6), 3.0);
-        assert_eq!(control.accepted(9.0, 3.0, 25), 2.0);
+        assert_eq!(control.accepted(6.0, 2.0, 6), 2.0);
+        assert_eq!(control.accepted(8.0, 2.0, 6), 3.0);
+        assert_eq!(control.accepted(11.0, 3.0, 25), 2.0);
     }
 }
