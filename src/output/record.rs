@@ -52,6 +52,9 @@ pub struct StepRecord {
     pub inertia_N: f64,
     /// Punch force minus die force minus inertia, divided by the larger force.
     pub balance_error: f64,
+    /// Largest excess of friction over the coefficient times the contact force of a point, as a share of the
+    /// coefficient times the largest contact force; 0 without friction.
+    pub cone_violation: f64,
     /// Norm of the residual where Newton stopped, as a displacement correction, mm.
     pub residual_norm_mm: f64,
     /// Attempts of this step that were refused and redone with a shorter one.

@@ -53,7 +53,7 @@ pub struct WorstValue {
 /// One certificate: its column in the history, and how bad a record is (larger is worse).
 type Certificate = (&'static str, fn(&StepRecord) -> f64, fn(f64) -> f64);
 
-const CERTIFICATES: [Certificate; 5] = [
+const CERTIFICATES: [Certificate; 6] = [
     (
         "max_penetration_mm",
         |record| record.max_penetration_mm,
@@ -66,6 +66,7 @@ const CERTIFICATES: [Certificate; 5] = [
     ),
     ("energy_error", |record| record.energy_error, f64::abs),
     ("balance_error", |record| record.balance_error, f64::abs),
+    ("cone_violation", |record| record.cone_violation, f64::abs),
     (
         "residual_norm_mm",
         |record| record.residual_norm_mm,

@@ -72,6 +72,7 @@ impl Ledger {
             die_force_N: measures.die_force,
             inertia_N: measures.inertia,
             balance_error: imbalance / largest_force,
+            cone_violation: measures.cone_violation,
             residual_norm_mm: effort.residual_norm,
             refused_solves: effort.refused_solves,
         }

@@ -60,9 +60,9 @@ pub struct Measures {
     pub max_complementarity: f64,
     /// Largest equivalent plastic strain.
     pub max_plastic_strain: f64,
-    /// Largest excess of friction over the coefficient times the contact force of a point, N; not
-    /// positive if the cone holds.
-    pub max_cone_violation: f64,
+    /// Largest excess of friction over the coefficient times the contact force of a point, as a share
+    /// of the coefficient times the largest contact force; zero if the cone holds.
+    pub cone_violation: f64,
 }
 
 impl LocalSystem {
@@ -101,7 +101,7 @@ impl LocalSystem {
                 SurfaceSide::Bottom => partial.sums[1] += upward,
             }
             if let Some(law) = contact.law.friction {
-                let beyond = friction.abs() - law.coefficient * force.max(0.0);
+                let beyond = friction.abs() / law.coefficient - force.max(0.0);
                 partial.maxima[5] = partial.maxima[5].max(beyond);
             }
             partial.sums[6] += 0.5 * force * contact.law.give * u[m];
@@ -221,7 +221,7 @@ impl Measures {
             max_contact_force: whole_sheet * maxima[2],
             max_complementarity: whole_sheet * maxima[3],
             max_plastic_strain: maxima[4],
-            max_cone_violation: whole_sheet * maxima[5].max(0.0),
+            cone_violation: maxima[5].max(0.0) / maxima[2].max(f64::MIN_POSITIVE),
         }
     }
 }
