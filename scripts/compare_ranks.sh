@@ -5,8 +5,6 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/environment.sh
-# With more ranks than cores, ranks must not wait in a busy loop for those that have none.
-export OMPI_MCA_mpi_yield_when_idle=1
 
 cargo build --release --locked
 program=${CARGO_TARGET_DIR:-target}/release/ssnp155

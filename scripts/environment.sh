@@ -6,6 +6,8 @@ export OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1
 export OMPI_MCA_hwloc_base_binding_policy=none
 # More ranks than cores are slow but correct.
 export OMPI_MCA_rmaps_base_oversubscribe=1
+# A rank that waits must not keep the core from one that works: without this, a busy machine is many times slower.
+export OMPI_MCA_mpi_yield_when_idle=1
 # Containers often run as root, and without the rights for single-copy messages.
 if [ "$(id -u)" -eq 0 ]; then
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1

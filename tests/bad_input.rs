@@ -266,7 +266,7 @@ fn neither_a_slip_nor_a_question_touches_an_earlier_run() {
     );
     let help = run(2, PATIENCE, &["-output_dir", folder, "-help"]);
     assert_eq!(help.code, Some(0), "{}", help.stderr);
-    for option in ["-sheet_nx", "-snes_max_it", "-pc_factor_mat_solver_type"] {
+    for option in ["-sheet_nx", "-snes_max_it", "-ts_max_steps"] {
         assert!(help.stdout.contains(option), "{option}");
     }
     assert_eq!(std::fs::read_to_string(&history).unwrap(), "earlier");

@@ -34,7 +34,7 @@ fn a_slip_of_the_pen_names_the_option_that_was_meant() {
         ("Stroke_", "stroke"),
         ("youngs_modulus", "young_modulus"),
         ("poisson", "poisson_ratio"),
-        ("contact_stiffness", "contact_compliance"),
+        ("contact_complience", "contact_compliance"),
         ("dtmax", "dt_max"),
         ("output-dir", "output_dir"),
         ("Output_Dri", "output_dir"),
@@ -67,7 +67,7 @@ fn a_slip_of_the_pen_names_the_option_that_was_meant() {
 fn an_option_of_nobody_is_an_error() {
     assert!(error_of("friction").unwrap().ends_with("; -help lists all"));
     for name in [
-        "friction_coefficient",
+        "friction_law",
         "use_friction",
         "start",
         "foo",
