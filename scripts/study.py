@@ -85,30 +85,30 @@ def sweep(name, values, extra):
 
 
 def convergence(extra):
-    meshes = [(85, 3), (170, 5), (340, 10)]
+    """Three meshes with the default step, three steps on the default mesh."""
+    meshes, steps = [(85, 3), (170, 5), (340, 10)], ["9", "4.5", "2.25"]
     for friction in ["0", FRICTION]:
+        found = {}
+        for nx, ny, largest in [(*mesh, "9") for mesh in meshes] + [(170, 5, step) for step in steps[1:]]:
+            options = ["-friction_coefficient", friction, "-sheet_nx", str(nx), "-sheet_ny", str(ny)]
+            options += ["-dt_max", largest, *WITHDRAWN, *extra]
+            found[nx, largest] = quantities(*run(f"convergence-{friction}-{nx}-{largest}", options))
         print(f"Coefficient of friction {friction}:\n")
-        rows, by_mesh = [], {}
-        for nx, ny in meshes:
-            for largest in ["9", "4.5", "2.25"]:
-                options = ["-friction_coefficient", friction, "-sheet_nx", str(nx), "-sheet_ny", str(ny)]
-                options += ["-dt_max", largest, *WITHDRAWN, *extra]
-                found = quantities(*run(f"convergence-{friction}-{nx}-{largest}", options))
-                by_mesh[nx, largest] = found
-                rows.append([f"{nx} x {ny}", largest, *found.values()])
-        table(["mesh", "dt_max ms", *found], rows)
+        heads = ["mesh", "dt_max ms", *found[170, "9"]]
+        names = {nx: f"{nx} x {ny}" for nx, ny in meshes}
+        table(heads, [[names[nx], largest, *values.values()] for (nx, largest), values in found.items()])
         rows = []
-        for quantity in list(found)[:7]:
-            values = [by_mesh[nx, "2.25"][quantity] for nx, _ in meshes]
-            steps = [by_mesh[340, largest][quantity] for largest in ["9", "4.5", "2.25"]]
-            if None in values + steps:
+        for quantity in list(found[170, "9"])[:7]:
+            by_mesh = [found[nx, "9"][quantity] for nx, _ in meshes]
+            by_step = [found[170, step][quantity] for step in steps]
+            if None in by_mesh + by_step:
                 continue
-            # The finest mesh moved on by its last change (first order), and by that of the step.
-            mesh_change = values[2] - values[1]
-            step_change = steps[2] - steps[1]
-            rows.append([quantity, values[2] + mesh_change / 3.0 + step_change,
-                         abs(mesh_change) + abs(step_change), values[1] - values[0], mesh_change, step_change])
-        table(["quantity", "extrapolated", "error estimate", "85 to 170", "170 to 340", "last halving of the step"], rows)
+            # Second order in the mesh, first in the step; the error is what the last refinement of each still changed.
+            mesh, step = by_mesh[2] - by_mesh[1], by_step[2] - by_step[1]
+            rows.append([quantity, by_mesh[2] + mesh / 3.0 + (by_step[2] - by_step[0]) + step,
+                         abs(mesh) + abs(step), mesh, step])
+        table(["quantity", "extrapolated", "error estimate", "170 to 340 changes it by",
+               "the last halving of the step by"], rows)
 
 
 def sensitivity(extra):

@@ -8,4 +8,6 @@ mod shape;
 
 pub use quad8::{ElementForce, Quad8, SinglePointFailure};
 pub use quadrature::{Quadrature, gauss_points};
-pub use shape::{EDGE_SHAPE_CURVATURES, edge_shape, edge_shape_slopes, shape, shape_gradients};
+pub use shape::{
+    EDGE_SHAPE_CURVATURES, NODES, edge_shape, edge_shape_slopes, shape, shape_gradients,
+};

@@ -1,7 +1,7 @@
 //! Shape functions of the eight-node serendipity quadrilateral and of its edges.
 
-/// Reference coordinates of the nodes, in VTK's order.
-const NODES: [[f64; 2]; 8] = [
+/// Reference coordinates (ξ, η) of the nodes, in VTK's order.
+pub const NODES: [[f64; 2]; 8] = [
     [-1.0, -1.0],
     [1.0, -1.0],
     [1.0, 1.0],

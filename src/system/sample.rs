@@ -3,7 +3,7 @@
 use super::evaluate::ElementFailure;
 use super::local::LocalContact;
 use super::{LocalSystem, System, SystemError};
-use crate::element::{gauss_points, shape};
+use crate::element::{NODES, gauss_points};
 use crate::mesh::SurfaceSide;
 
 /// Values summed at a node over its elements and contact points: four stress components and the
@@ -122,26 +122,10 @@ impl LocalSystem {
         let count = points.len() as f64;
         // On a symmetric tensor rule 1, ξ, η and ξη are orthogonal: the fit needs no solve.
         let mean_square = points.iter().map(|(x, _)| x[0] * x[0]).sum::<f64>() / count;
-        let nodes: [[f64; 2]; 8] = [
-            [-1.0, -1.0],
-            [1.0, -1.0],
-            [1.0, 1.0],
-            [-1.0, 1.0],
-            [0.0, -1.0],
-            [1.0, 0.0],
-            [0.0, 1.0],
-            [-1.0, 0.0],
-        ];
-        debug_assert!(
-            nodes
-                .iter()
-                .enumerate()
-                .all(|(a, &x)| (shape(x)[a] - 1.0).abs() < 1e-12)
-        );
         let weights = points
             .iter()
             .map(|([xi, eta], _)| {
-                nodes.map(|[xa, ea]| {
+                NODES.map(|[xa, ea]| {
                     let (along, across) = (xi * xa / mean_square, eta * ea / mean_square);
                     (1.0 + along) * (1.0 + across) / count
                 })
