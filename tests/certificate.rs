@@ -25,6 +25,7 @@ fn check(name: &str, ranks: usize, more: &str) {
     all("max_penetration_mm", |depth| depth <= 0.005);
     all("min_contact_force_N", |force| force >= -1e-6);
     all("balance_error", |error| error.abs() <= 1e-6);
+    all("cone_violation", |excess| excess <= 1e-6);
     all("residual_norm_mm", |norm| norm <= 1e-9);
 }
 
@@ -36,4 +37,9 @@ fn every_step_of_a_run_is_certified() {
 #[test]
 fn every_step_of_a_static_run_on_two_ranks_is_certified() {
     check("static", 2, "-dynamics none");
+}
+
+#[test]
+fn every_step_of_a_run_with_friction_is_certified() {
+    check("friction", 1, "-friction_coefficient 0.1342");
 }
