@@ -6,7 +6,8 @@
   scripts/study.py sensitivity [OPTION ...]                  angle after release against the data, +-5 %
 
 Tables are Markdown on standard output. Options given last go to every run. The program is
-target/release/ssnp155, or $SSNP155. Results of single runs stay in results-study/.
+target/release/ssnp155, or $SSNP155. Results of single runs stay in results-study/; with REUSE=1 a run that
+is there is not made again.
 """
 import csv
 import json
@@ -25,12 +26,13 @@ def run(name, options):
     """The summary and the history of one run."""
     folder = ROOT / "results-study" / name
     command = [PROGRAM, *options, "-output_dir", str(folder), "-output_every", "0"]
-    print("run:", " ".join(options), file=sys.stderr, flush=True)
-    done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
+    if not (os.environ.get("REUSE") and (folder / "summary.json").exists()):
+        print("run:", " ".join(options), file=sys.stderr, flush=True)
+        subprocess.run(command, stdout=subprocess.PIPE, check=False)
     try:
         summary = json.loads((folder / "summary.json").read_text())
     except OSError:
-        sys.exit(f"study: {' '.join(command)} ended with code {done.returncode} and no summary")
+        sys.exit(f"study: no summary from {' '.join(command)}")
     if summary["status"] != "finished":
         print("study: not finished:", summary["reason"], file=sys.stderr)
     with open(folder / "history.csv") as rows:
@@ -47,7 +49,8 @@ def quantities(summary, history):
         found = [row["force_N"] for row in loading if abs(row["stroke_mm"] - depth) < 1e-6]
         return found[0] if found else None
 
-    vanish = [angle for name, angle in angles.items() if name.startswith("tools vanish")]
+    deepest = max((name for name in angles if name.startswith("tools vanish")),
+                  key=lambda name: float(name.split()[-2]), default=None)
     return {
         "F(5) N": force(5.0),
         "F(10) N": force(10.0),
@@ -55,7 +58,7 @@ def quantities(summary, history):
         "F max, d < 25 N": max((row["force_N"] for row in loading if row["stroke_mm"] < 25.0), default=None),
         "loaded deg": angles.get("full stroke"),
         "withdrawn deg": angles.get("end of the motion") if summary["status"] == "finished" else None,
-        "tools vanish deg": vanish[0] if vanish else None,
+        "tools vanish deg": angles.get(deepest),
         "steps": summary["counts"]["steps"],
         "refused": summary["counts"]["refused_solves"],
         "iterations": summary["counts"]["newton_iterations"],

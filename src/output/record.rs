@@ -55,6 +55,8 @@ pub struct StepRecord {
     /// Largest excess of friction over the coefficient times the contact force of a point, as a share of the
     /// coefficient times the largest contact force; 0 without friction.
     pub cone_violation: f64,
+    /// Root mean square distance of the outer arm from the straight fit that gives the angle, mm.
+    pub angle_fit_residual_mm: f64,
     /// Norm of the residual where Newton stopped, as a displacement correction, mm.
     pub residual_norm_mm: f64,
     /// Attempts of this step that were refused and redone with a shorter one.

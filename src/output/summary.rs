@@ -150,6 +150,8 @@ pub struct Summary {
     pub last: Option<StepRecord>,
     /// Opening angles between the arms by name, degrees.
     pub angles_deg: BTreeMap<String, f64>,
+    /// Root mean square distance of the arm from the straight fit of each of these angles, mm.
+    pub angle_fit_residuals_mm: BTreeMap<String, f64>,
     /// Counts over the run.
     pub counts: Counts,
     /// Tolerances by name, units in the names.
@@ -248,6 +250,7 @@ mod tests {
                 ..record(40.0)
             }),
             angles_deg: BTreeMap::new(),
+            angle_fit_residuals_mm: BTreeMap::new(),
             counts: Counts {
                 steps: 11,
                 refused_solves: 6,

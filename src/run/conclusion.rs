@@ -8,10 +8,10 @@ use petsc::Session;
 use super::judgement::{BALANCE_LIMIT, PULL_LIMIT, judge};
 use super::{Failure, Outcome, Refusal, RunError, unread};
 use crate::case::Case;
-use crate::output::VerdictTable;
 use crate::output::monitor::{failed_banner, finished_banner};
 use crate::output::number;
 use crate::output::summary::{Certificates, Counts, Provenance, Status, Summary, Timing};
+use crate::output::{StepRecord, VerdictTable};
 
 /// Judges, writes and shows what came out; tells whether the run finished and all verdicts hold.
 /// Collective.
@@ -62,11 +62,17 @@ fn summarise(
         Status::NotConverged
     };
     let text = |value: &str| value.to_owned();
+    let angles = angles(case, outcome);
+    let by_name = |value: fn(&NamedAngle) -> f64| {
+        let pair = |angle: &NamedAngle| (angle.name.clone(), value(angle));
+        angles.iter().map(pair).collect()
+    };
     Summary {
         status,
         reason: outcome.failure.as_ref().map(Failure::sentence),
         last: records.last().copied(),
-        angles_deg: angles(case, outcome).into_iter().collect(),
+        angles_deg: by_name(|angle| angle.degrees),
+        angle_fit_residuals_mm: by_name(|angle| angle.fit_residual),
         counts: Counts {
             steps: outcome.counts.steps,
             refused_solves: outcome.counts.refused,
@@ -110,8 +116,15 @@ fn summarise(
     }
 }
 
-/// The angles of the run, with names that say how the tools went away.
-fn angles(case: &Case, outcome: &Outcome) -> Vec<(String, f64)> {
+/// An angle of the run, with a name that says how the tools went away.
+struct NamedAngle {
+    name: String,
+    degrees: f64,
+    /// Root mean square distance of the arm from its straight fit, mm.
+    fit_residual: f64,
+}
+
+fn angles(case: &Case, outcome: &Outcome) -> Vec<NamedAngle> {
     let motion = case.loading.motion();
     let records = outcome.recorder.records();
     let at = |time: f64| {
@@ -119,17 +132,25 @@ fn angles(case: &Case, outcome: &Outcome) -> Vec<(String, f64)> {
             .iter()
             .find(|record| (record.t_ms - time).abs() < 1e-6)
     };
+    let recorded = |name: &str, record: &StepRecord| NamedAngle {
+        name: name.to_owned(),
+        degrees: record.angle_deg,
+        fit_residual: record.angle_fit_residual_mm,
+    };
     let mut angles = Vec::new();
     if let Some(record) = at(motion.time_load) {
-        angles.push(("full stroke".to_owned(), record.angle_deg));
+        angles.push(recorded("full stroke", record));
     }
     if let Some(record) = at(motion.end()) {
-        angles.push(("end of the motion".to_owned(), record.angle_deg));
+        angles.push(recorded("end of the motion", record));
     }
     for springback in &outcome.springbacks {
         let depth = number(motion.depth(springback.t_ms));
-        let name = format!("tools vanish at {depth} mm");
-        angles.push((name, springback.released_angle_deg));
+        angles.push(NamedAngle {
+            name: format!("tools vanish at {depth} mm"),
+            degrees: springback.released_angle_deg,
+            fit_residual: springback.fit_residual_mm,
+        });
     }
     angles
 }
@@ -138,7 +159,7 @@ fn effort(case: &Case, outcome: &Outcome) -> Vec<(&'static str, String)> {
     let counts = &outcome.counts;
     let angles = angles(case, outcome)
         .into_iter()
-        .map(|(name, angle)| format!("{angle:.2} {name}"))
+        .map(|angle| format!("{:.2} {}", angle.degrees, angle.name))
         .collect::<Vec<_>>()
         .join(", ");
     let mut facts = Vec::new();

@@ -73,6 +73,7 @@ impl Ledger {
             inertia_N: measures.inertia,
             balance_error: imbalance / largest_force,
             cone_violation: measures.cone_violation,
+            angle_fit_residual_mm: measures.angle_fit_residual,
             residual_norm_mm: effort.residual_norm,
             refused_solves: effort.refused_solves,
         }
