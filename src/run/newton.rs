@@ -1,4 +1,6 @@
-//! When a Newton step is damped, and where a Newton solve starts.
+//! How far a Newton step goes, and how much inertia its tangent has.
+
+use std::cell::Cell;
 
 /// Full steps are trusted up to this iteration.
 const TRUSTED_ITERATIONS: usize = 5;
@@ -62,6 +64,46 @@ pub(super) fn limited_length(iteration: usize, correction: f64, expected: f64) -
     }
 }
 
+/// Factor by which the tangent's inertia grows after a limited step, and shrinks after a free one.
+const INERTIA_FACTOR: f64 = 4.0;
+/// Most inertia in the tangent, times its own.
+const MOST_INERTIA: f64 = 1e4;
+
+/// Inertia in the tangent of a Newton solve, as a multiple of its own.
+///
+/// A step that [`limited_length`] cuts tells that the tangent is nearly singular or indefinite: the sheet
+/// snaps through. More mass in the next tangent, as a shorter time step would bring, makes it definite;
+/// the residual, and so the solution, stays the same (pseudo-transient continuation: Kelley and Keyes
+/// 1998, SIAM J. Numer. Anal. 35, 508-523). Without mass in the case it changes nothing.
+#[derive(Debug)]
+pub(super) struct TangentInertia(Cell<f64>);
+
+impl TangentInertia {
+    /// The tangent's own inertia.
+    pub(super) const fn own() -> Self {
+        Self(Cell::new(1.0))
+    }
+
+    /// The multiple for the next tangent.
+    pub(super) fn multiple(&self) -> f64 {
+        self.0.get()
+    }
+
+    /// A new solve begins.
+    pub(super) fn reset(&self) {
+        self.0.set(1.0);
+    }
+
+    /// A step was given this length by [`limited_length`].
+    pub(super) fn follow(&self, length: f64) {
+        self.0.set(if length < 1.0 {
+            (self.0.get() * INERTIA_FACTOR).min(MOST_INERTIA)
+        } else {
+            (self.0.get() / INERTIA_FACTOR).max(1.0)
+        });
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -73,5 +115,15 @@ mod tests {
         assert!(falling.into_iter().all(|l| l == 1.0));
         let hanging: Vec<f64> = (0..9).map(|k| damping.step_length(k, 1e-3)).collect();
         assert_eq!(hanging, [1.0, 1.0, 1.0, 1.0, 1.0, 0.5, 1.0, 0.5, 1.0]);
+    }
+
+    #[test]
+    fn inertia_grows_while_steps_are_limited_and_goes_back() {
+        let inertia = TangentInertia::own();
+        let multiples = [1.0, 0.2, 0.5, 1.0, 1.0, 1.0].map(|length| {
+            inertia.follow(length);
+            inertia.multiple()
+        });
+        assert_eq!(multiples, [1.0, 4.0, 16.0, 4.0, 1.0, 1.0]);
     }
 }

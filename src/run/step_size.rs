@@ -2,7 +2,7 @@
 //! hit exactly.
 
 /// Up to so many Newton iterations the step may grow.
-const EASY_ITERATIONS: usize = 10;
+const EASY_ITERATIONS: usize = 14;
 /// Beyond so many it shrinks.
 const HARD_ITERATIONS: usize = 20;
 /// Factor of growth and shrinkage.

@@ -9,7 +9,7 @@ use petsc::{CallbackError, Matrix, SnesReason, SnesRef, Ts, TsReason, TsRef, Vec
 
 use super::ledger::{Ledger, StepEffort};
 use super::linear::LinearSolve;
-use super::newton::Damping;
+use super::newton::{Damping, TangentInertia};
 use super::recorder::Recorder;
 use super::refusal::Refusal;
 use super::springback::{Springback, springback};
@@ -28,6 +28,7 @@ pub(super) struct Simulation {
     control: RefCell<StepControl>,
     ledger: RefCell<Ledger>,
     damping: RefCell<Damping>,
+    inertia: Rc<TangentInertia>,
     /// Solution before the last accepted step, and the length of that step (ms); none at the start
     /// and where the punch turns.
     before: RefCell<Option<(Vector, f64)>>,
@@ -95,6 +96,7 @@ impl Simulation {
             )),
             ledger: RefCell::default(),
             damping: RefCell::default(),
+            inertia: Rc::new(TangentInertia::own()),
             before: RefCell::new(None),
             accepted: RefCell::new(accepted),
             accepted_time: Cell::new(0.0),
@@ -170,6 +172,7 @@ impl Simulation {
     ) -> Result<(), RunError> {
         let start = self.accepted.borrow();
         let (for_residual, for_jacobian) = (Rc::clone(&self.system), Rc::clone(&self.system));
+        let inertia = Rc::clone(&self.inertia);
         match dynamics {
             Dynamics::Slow => {
                 ts.set_second_order(
@@ -178,7 +181,7 @@ impl Simulation {
                     move |t, u, _, a, out| for_residual.residual(t, u, Some(a), out),
                     move |t, u, _, _, _, shift, out| {
                         for_jacobian
-                            .jacobian(t, u, shift, out)
+                            .jacobian(t, u, inertia.multiple() * shift, out)
                             .map_err(not_evaluated)
                     },
                 )?;

@@ -39,6 +39,7 @@ impl Simulation {
         self.attempted_time.set(t);
         let dt = ts.time_step()?;
         self.attempted.set(dt);
+        self.inertia.reset();
         self.expected.set(self.expected_displacement(t, dt)?);
         Ok(())
     }
@@ -52,7 +53,9 @@ impl Simulation {
             .borrow_mut()
             .step_length(iteration, info.residual_norm);
         let correction = self.system.largest_displacement(info.step)?;
-        Ok(damped.min(limited_length(iteration, correction, self.expected.get())))
+        let limited = limited_length(iteration, correction, self.expected.get());
+        self.inertia.follow(limited);
+        Ok(damped.min(limited))
     }
 
     /// The largest displacement that a step of length `dt` (ms) is expected to bring, mm: that of the
