@@ -54,7 +54,7 @@ fn deformed_states(kernel: &Quad8, u: &[[f64; 2]; 8], material: &VonMises) -> Ve
                 .point_response(q, u, material, &PointState::VIRGIN)
                 .unwrap()
                 .0
-                .state
+                .state()
         })
         .collect()
 }
@@ -78,7 +78,7 @@ fn the_element_tangent_agrees_with_central_differences() {
             let exact = force(&kernel, &u, &material, &states);
             let yielded = (0..kernel.point_count()).any(|q| {
                 let (response, ..) = kernel.point_response(q, &u, &material, &states[q]).unwrap();
-                response.state.equivalent_plastic_strain > states[q].equivalent_plastic_strain
+                response.state().equivalent_plastic_strain > states[q].equivalent_plastic_strain
             });
             assert_eq!(
                 yielded, plastic,
@@ -154,7 +154,7 @@ fn elastic_forces_are_the_slope_of_the_stored_energy() {
         (0..kernel.point_count())
             .map(|q| {
                 let (r, _, volume) = kernel.point_response(q, u, &material, &states[q]).unwrap();
-                volume * r.elastic_energy
+                volume * r.elastic_energy()
             })
             .sum()
     };

@@ -118,7 +118,7 @@ impl Quad8 {
             if with_stiffness {
                 add_stiffness(
                     &gradients,
-                    &response.tangent,
+                    &response.tangent(),
                     volume,
                     &traction,
                     &mut out.stiffness,

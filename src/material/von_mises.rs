@@ -41,18 +41,29 @@ pub struct TurnedOver {
     pub determinant: f64,
 }
 
-/// What a material point answers.
+/// What a material point answers: the stress at once, tangent, state and energy when they are asked for,
+/// because a residual needs none of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Response {
     /// Kirchhoff stress, MPa: xx, xy, yy, zz.
     pub kirchhoff: [f64; 4],
-    /// Spatial tangent of the Kirchhoff stress, MPa, in the order xx, yy, xy (engineering shear):
-    /// the Lie derivative of the stress is this matrix times the rate of deformation.
-    pub tangent: [[f64; 3]; 3],
-    /// The state if this step is accepted.
-    pub state: PointState,
-    /// Stored elastic energy per reference volume, mJ/mm³.
-    pub elastic_energy: f64,
+    /// Bulk and shear modulus, MPa.
+    moduli: [f64; 2],
+    deformation_gradient: [[f64; 2]; 2],
+    determinant: f64,
+    before: PointState,
+    trial: PrincipalStrains,
+    /// Mean and deviators of the trial strains, and the deviators' squared norm.
+    mean: f64,
+    deviator: [f64; 3],
+    norm_squared: f64,
+    /// Principal stresses, MPa.
+    stress: [f64; 3],
+    /// Radial return: the deviator shrinks by this factor.
+    shrink: f64,
+    /// The tangent's loss along the flow.
+    softening: f64,
+    equivalent_plastic_strain: f64,
 }
 
 impl VonMises {
@@ -70,8 +81,8 @@ impl VonMises {
         &self.hardening
     }
 
-    /// Stress, tangent and new state for the deformation gradient `f` (rows x, y), starting from
-    /// `state`, which is left alone.
+    /// The response to the deformation gradient `f` (rows x, y), starting from `state`, which is left
+    /// alone.
     pub fn respond(&self, f: &[[f64; 2]; 2], state: &PointState) -> Result<Response, TurnedOver> {
         let determinant = f[0][0] * f[1][1] - f[0][1] * f[1][0];
         if determinant.is_nan() || determinant <= 0.0 {
@@ -85,8 +96,7 @@ impl VonMises {
 
         let p_old = state.equivalent_plastic_strain;
         let (yield_old, _) = self.hardening.yield_stress(p_old);
-        // Radial return: the deviator shrinks by `shrink`; `softening` is the tangent's loss along it.
-        let (shrink, softening, new_p) = if q_trial <= yield_old {
+        let (shrink, softening, equivalent_plastic_strain) = if q_trial <= yield_old {
             (1.0, 0.0, p_old)
         } else {
             let three_g = 3.0 * self.shear;
@@ -95,50 +105,76 @@ impl VonMises {
             let softening = shrink - step.slope / (three_g + step.slope);
             (shrink, softening, p_old + step.dp)
         };
-
         let pressure = 3.0 * self.bulk * mean;
         let stress = deviator.map(|e| pressure + 2.0 * self.shear * shrink * e);
-        let elastic_strain = deviator.map(|e| mean + shrink * e);
-        let elastic_energy =
-            4.5 * self.bulk * mean * mean + self.shear * shrink * shrink * norm_squared;
 
-        let flow = if norm_squared > 0.0 {
-            deviator.map(|e| e / norm_squared.sqrt())
+        Ok(Response {
+            kirchhoff: trial.tensor(stress),
+            moduli: [self.bulk, self.shear],
+            deformation_gradient: *f,
+            determinant,
+            before: *state,
+            trial,
+            mean,
+            deviator,
+            norm_squared,
+            stress,
+            shrink,
+            softening,
+            equivalent_plastic_strain,
+        })
+    }
+}
+
+impl Response {
+    /// Spatial tangent of the Kirchhoff stress, MPa, in the order xx, yy, xy (engineering shear): the Lie
+    /// derivative of the stress is this matrix times the rate of deformation.
+    pub fn tangent(&self) -> [[f64; 3]; 3] {
+        let ([bulk, shear], stress) = (self.moduli, &self.stress);
+        let flow = if self.norm_squared > 0.0 {
+            self.deviator.map(|e| e / self.norm_squared.sqrt())
         } else {
             [0.0; 3]
         };
         let modulus = |a: usize, b: usize| {
             let same = if a == b { 1.0 } else { 0.0 };
-            self.bulk + 2.0 * self.shear * shrink * (same - 1.0 / 3.0)
-                - 2.0 * self.shear * softening * flow[a] * flow[b]
+            bulk + 2.0 * shear * self.shrink * (same - 1.0 / 3.0)
+                - 2.0 * shear * self.softening * flow[a] * flow[b]
         };
         let normal = [
             [modulus(0, 0) - 2.0 * stress[0], modulus(0, 1)],
             [modulus(1, 0), modulus(1, 1) - 2.0 * stress[1]],
         ];
-        let shear = self.shear * shrink * trial.spin_factor - 0.5 * (stress[0] + stress[1]);
+        let twist = shear * self.shrink * self.trial.spin_factor - 0.5 * (stress[0] + stress[1]);
+        self.trial.rotate_tangent(normal, twist)
+    }
 
-        Ok(Response {
-            kirchhoff: trial.tensor(stress),
-            tangent: trial.rotate_tangent(normal, shear),
-            state: PointState {
-                cp_inverse: if shrink < 1.0 {
-                    pull_back(
-                        f,
-                        determinant,
-                        &trial.tensor(elastic_strain.map(|e| (2.0 * e).exp())),
-                    )
-                } else {
-                    state.cp_inverse
-                },
-                equivalent_plastic_strain: new_p,
+    /// The state if this step is accepted.
+    pub fn state(&self) -> PointState {
+        let elastic_strain = self.deviator.map(|e| self.mean + self.shrink * e);
+        PointState {
+            cp_inverse: if self.shrink < 1.0 {
+                pull_back(
+                    &self.deformation_gradient,
+                    self.determinant,
+                    &self.trial.tensor(elastic_strain.map(|e| (2.0 * e).exp())),
+                )
+            } else {
+                self.before.cp_inverse
             },
-            elastic_energy,
-        })
+            equivalent_plastic_strain: self.equivalent_plastic_strain,
+        }
+    }
+
+    /// Stored elastic energy per reference volume, mJ/mm³.
+    pub fn elastic_energy(&self) -> f64 {
+        let [bulk, shear] = self.moduli;
+        4.5 * bulk * self.mean * self.mean + shear * self.shrink * self.shrink * self.norm_squared
     }
 }
 
 /// Logarithmic strains of a left Cauchy-Green tensor in its principal axes.
+#[derive(Clone, Copy, Debug)]
 struct PrincipalStrains {
     /// Two in-plane values and the one normal to the plane.
     strain: [f64; 3],

@@ -202,7 +202,7 @@ impl LocalSystem {
                 let (response, ..) = self.kernels[element]
                     .point_response(point, &values, &self.problem.material, &self.states[index])
                     .map_err(|cause| self.element_failure(element, u, cause))?;
-                self.states[index] = response.state;
+                self.states[index] = response.state();
             }
         }
         self.commit_friction(t, u);

@@ -140,7 +140,7 @@ impl LocalSystem {
                     .point_response(point, &values, material, state)
                     .map_err(|cause| self.element_failure(element, u, cause))?;
                 let p = state.equivalent_plastic_strain;
-                partial.sums[4] += volume * response.elastic_energy;
+                partial.sums[4] += volume * response.elastic_energy();
                 partial.sums[5] += volume * material.hardening().plastic_work(p);
                 partial.maxima[4] = partial.maxima[4].max(p);
             }

@@ -45,7 +45,7 @@ impl Driver {
             .material
             .respond(&f, &state)
             .expect("a positive stretch");
-        (response.kirchhoff, response.state)
+        (response.kirchhoff, response.state())
     }
 
     /// Moves on to the logarithmic strain `x` with the free stresses at zero; gives the stress.

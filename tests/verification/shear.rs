@@ -125,7 +125,7 @@ fn plastic(_: &SimpleCommunicator) -> Result<Answer> {
         for step in 1..=steps {
             let gamma = end * step as f64 / steps as f64;
             let response = material.respond(&[[1.0, gamma], [0.0, 1.0]], &state)?;
-            (state, stress) = (response.state, response.kirchhoff);
+            (state, stress) = (response.state(), response.kirchhoff);
         }
         Ok((stress, state.equivalent_plastic_strain))
     };
