@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use mpi::traits::Communicator;
 use petsc::Session;
 
+use super::blas::Blas;
 use super::judgement::{BALANCE_LIMIT, PULL_LIMIT, judge};
 use super::{Failure, Outcome, Refusal, RunError, unread};
 use crate::case::Case;
@@ -102,6 +103,10 @@ fn summarise(
                     outcome.factor_solver.clone().unwrap_or_default(),
                 ),
                 (text("unknowns"), outcome.unknowns.to_string()),
+                (
+                    text("blas"),
+                    Blas::loaded().map_or_else(|| text("not known"), |blas| blas.to_string()),
+                ),
             ]),
             options: case
                 .options()

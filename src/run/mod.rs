@@ -2,6 +2,7 @@
 //! the step that cannot be solved, and how it ended.
 //! Never: mechanics, or how a file is written.
 
+mod blas;
 mod conclusion;
 mod defaults;
 mod judgement;
@@ -118,7 +119,8 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     let landmarks = landmarks(case)?;
     let system = Rc::new(System::new(problem, comm.duplicate())?);
     let unknowns = system.unknown_count();
-    let recorder = Recorder::new(case, &system)?;
+    let mut recorder = Recorder::new(case, &system)?;
+    recorder.show(&blas::report(comm));
     let simulation = Rc::new(Simulation::new(case, system, recorder, landmarks)?);
     let finish = simulation.run(case)?;
     let failure = finish.reason.is_diverged().then(|| Failure {
