@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds the container image, runs its default command (the benchmark on 2 ranks), and compares with a native run.
 #   scripts/image.sh
-# Takes docker if it is there, otherwise buildah. From the environment:
+# Takes docker if its engine runs, otherwise buildah. From the environment:
 #   IMAGE_BUILD_ARGS   further words for the build, for example --build-arg CARGO_HTTP_CAINFO=...
 #   IMAGE_RUN_ARGS     further words for the run
 # buildah's own variables count, too: without the rights for namespaces, BUILDAH_ISOLATION=chroot STORAGE_DRIVER=vfs.
@@ -46,16 +46,15 @@ size_bytes() {
     fi
 }
 
-engine=
-for candidate in docker buildah; do
-    if [ -z "$engine" ] && command -v $candidate >/dev/null; then
-        engine=$candidate
-    fi
-done
-[ -n "$engine" ] || {
-    echo "image: neither docker nor buildah is on the PATH; install one of them" >&2
+# docker may be there without its engine.
+if docker info >/dev/null 2>&1; then
+    engine=docker
+elif command -v buildah >/dev/null; then
+    engine=buildah
+else
+    echo "image: neither a running docker nor buildah is at hand; start or install one of them" >&2
     exit 1
-}
+fi
 
 echo "image: $engine builds $image"
 start=$SECONDS
