@@ -4,7 +4,7 @@
 # Takes docker if its engine runs, otherwise buildah. From the environment:
 #   IMAGE_BUILD_ARGS   further words for the build, for example --build-arg CARGO_HTTP_CAINFO=...
 #   IMAGE_RUN_ARGS     further words for the run
-# buildah's own variables count, too: without the rights for namespaces, BUILDAH_ISOLATION=chroot STORAGE_DRIVER=vfs.
+# buildah reads its own variables, too: BUILDAH_ISOLATION=chroot helps where namespaces are not allowed.
 # Exit code 0 if both runs ended alike and agree where scripts/compare_runs.py says they must.
 set -euo pipefail
 cd "$(dirname "$0")/.."
