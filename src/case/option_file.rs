@@ -119,3 +119,32 @@ pub(super) fn is_option(word: &str) -> bool {
     let name = name.strip_prefix('-').unwrap_or(name);
     name.starts_with(|first: char| first.is_ascii_alphabetic()) && name.parse::<f64>().is_err()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::{any, prop, proptest};
+
+    #[test]
+    fn words_are_petscs_tokens() {
+        assert_eq!(
+            words(" -a  \"b c\" \t'd e\""),
+            Ok(vec!["-a", "b c", "'d", "e\""])
+        );
+        assert!(words("-a \"b").unwrap_err().contains("is not closed"));
+    }
+
+    proptest! {
+        #[test]
+        fn any_line_is_read_or_refused(line in any::<String>(), more in prop::collection::vec("[-a-z\"# ]{0,6}", 0..5)) {
+            let _ = included_by(&line);
+            let _ = included_by(&more.join(" "));
+        }
+
+        #[test]
+        fn words_without_quotes_come_back(given in prop::collection::vec("[!#-~]{1,8}", 0..6)) {
+            let text = given.join(" ");
+            assert_eq!(words(&text), Ok(given.iter().map(String::as_str).collect()));
+        }
+    }
+}
