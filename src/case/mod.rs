@@ -11,12 +11,15 @@ mod help;
 mod kind;
 mod model;
 mod option;
+mod option_file;
 mod provenance;
 mod reference;
 mod table;
 mod unused;
 
-pub use arguments::{check_arguments, check_options_file};
+pub use arguments::{
+    ENVIRONMENT, arguments_as_text, check_arguments, check_environment, check_options_file,
+};
 pub use error::{CaseError, Warning};
 pub use geometry::check_ranks;
 pub use help::{help_text, options_markdown};

@@ -53,7 +53,7 @@ pub enum RunError {
     #[error(transparent)]
     Output(#[from] OutputError),
     /// PETSc.
-    #[error(transparent)]
+    #[error("{0}; if a value of one of PETSc's options is to blame: -help lists what each can be")]
     Petsc(#[from] petsc::Error),
     /// A hook of the time stepper.
     #[error(transparent)]
@@ -111,9 +111,10 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     let clock = Instant::now();
     // Before any file is made: neither a slip of the pen nor a question may cost an earlier run's results.
     if petsc::options::has("help")? {
-        return defaults::show_help(case, comm).map(|()| None);
+        return defaults::read_options(case, comm).map(|()| None);
     }
     unread::refuse_slips()?;
+    defaults::read_options(case, comm)?;
     let problem = Problem::new(case);
     let motion = case.loading.motion();
     let landmarks = landmarks(case)?;
@@ -123,7 +124,9 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     recorder.show(&blas::report(comm));
     let simulation = Rc::new(Simulation::new(case, system, recorder, landmarks)?);
     let finish = simulation.run(case)?;
-    let failure = finish.reason.is_diverged().then(|| Failure {
+    // A limit of the user's (-ts_max_steps) is a good end for PETSc, but not for the motion.
+    let short = finish.time < motion.end() * (1.0 - 1e-9);
+    let failure = (short || finish.reason.is_diverged()).then(|| Failure {
         time: finish.time,
         depth: motion.depth(finish.time),
         reason: why(case, finish.reason, &finish.refusals),
