@@ -13,6 +13,7 @@ mod model;
 mod option;
 mod provenance;
 mod reference;
+mod reference_force;
 mod table;
 mod unused;
 
@@ -26,4 +27,5 @@ pub use model::{
 };
 pub use provenance::Difference;
 pub use reference::{Instant, ReferenceValue, Tolerance};
+pub use reference_force::ReferenceForce;
 pub use unused::check_unused;

@@ -53,7 +53,7 @@ pub struct WorstValue {
 /// One certificate: its column in the history, and how bad a record is (larger is worse).
 type Certificate = (&'static str, fn(&StepRecord) -> f64, fn(f64) -> f64);
 
-const CERTIFICATES: [Certificate; 6] = [
+const CERTIFICATES: [Certificate; 7] = [
     (
         "max_penetration_mm",
         |record| record.max_penetration_mm,
@@ -63,6 +63,11 @@ const CERTIFICATES: [Certificate; 6] = [
         "min_contact_force_N",
         |record| record.min_contact_force_N,
         |value| -value,
+    ),
+    (
+        "max_complementarity_mJ",
+        |record| record.max_complementarity_mJ,
+        f64::abs,
     ),
     ("energy_error", |record| record.energy_error, f64::abs),
     ("balance_error", |record| record.balance_error, f64::abs),

@@ -6,13 +6,13 @@ use mpi::traits::Communicator;
 use petsc::Session;
 
 use super::blas::Blas;
-use super::judgement::{BALANCE_LIMIT, PULL_LIMIT, judge};
+use super::judgement::{BALANCE_LIMIT, CONE_LIMIT, PULL_LIMIT, judge};
 use super::{Failure, Outcome, Refusal, RunError, unread};
 use crate::case::Case;
 use crate::output::monitor::{failed_banner, finished_banner};
 use crate::output::number;
 use crate::output::summary::{Certificates, Counts, Provenance, Status, Summary, Timing};
-use crate::output::{StepRecord, VerdictTable};
+use crate::output::{Report, StepRecord, VerdictTable};
 
 /// Judges, writes and shows what came out; tells whether the run finished and all verdicts hold.
 /// Collective.
@@ -26,10 +26,11 @@ pub fn conclude(
     comm: &impl Communicator,
 ) -> Result<bool, RunError> {
     let verdicts = judge(case, outcome.recorder.records(), outcome.failure.is_none())?;
+    let reference = case.reference_force()?;
+    let summary = summarise(case, &outcome, session, comm, verdicts.clone());
     if comm.rank() == 0 {
-        let summary = summarise(case, &outcome, session, comm, verdicts.clone());
         summary.write(outcome.recorder.folder().summary())?;
-        outcome.recorder.force_figure()?;
+        outcome.recorder.force_figure(&reference)?;
     }
     let mut text = if verdicts.rows.is_empty() {
         "\n".to_owned()
@@ -42,6 +43,17 @@ pub fn conclude(
         Some(failure) => text.push_str(&failed(case, failure, &outcome)),
     }
     outcome.recorder.show(&text);
+    // The page is made from the files of the run, which all ranks must have closed.
+    let (folder, records) = outcome.recorder.close();
+    if comm.rank() == 0 {
+        let report = Report {
+            case,
+            summary: &summary,
+            records: &records,
+            reference: &reference,
+        };
+        report.write(&folder)?;
+    }
     Ok(outcome.failure.is_none() && verdicts.failures() == 0)
 }
 
@@ -88,6 +100,7 @@ fn summarise(
             ),
             (text("pull"), PULL_LIMIT),
             (text("balance"), BALANCE_LIMIT),
+            (text("cone"), CONE_LIMIT),
         ]),
         worst: certificates.worst(),
         verdicts,

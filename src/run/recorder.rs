@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use mpi::traits::Communicator;
 
-use crate::case::Case;
+use crate::case::{Case, ReferenceForce};
 use crate::output::plot::{self, DeformedElement, Shape, View, gather_elements};
 use crate::output::{
     ContactFile, ContactSample, FieldSample, History, Monitor, OutputDir, OutputError, SheetFile,
@@ -88,6 +88,11 @@ impl Recorder {
         &self.records
     }
 
+    /// Closes the files; what is left is where they are, and the rows. Collective.
+    pub fn close(self) -> (OutputDir, Vec<StepRecord>) {
+        (self.folder, self.records)
+    }
+
     /// Shows the header of the step lines.
     pub fn begin(&mut self) {
         self.monitor.header();
@@ -159,11 +164,11 @@ impl Recorder {
         plot::shape(self.folder.file(&name), &figure)
     }
 
-    /// Draws force against stroke, on rank 0.
+    /// Draws force against stroke beside the reference, on rank 0.
     ///
     /// # Errors
     /// If the figure cannot be written.
-    pub fn force_figure(&self) -> Result<(), OutputError> {
+    pub fn force_figure(&self, reference: &ReferenceForce) -> Result<(), OutputError> {
         if self.history.is_none() || self.records.is_empty() {
             return Ok(());
         }
@@ -171,6 +176,7 @@ impl Recorder {
             self.folder.force_figure(),
             "Force of the punch, whole sheet",
             &self.records,
+            reference,
         )
     }
 

@@ -17,6 +17,7 @@ pub use force::force_svg;
 pub use shape::{Shape, View, shape_svg};
 
 use super::{OutputError, StepRecord, atomic};
+use crate::case::ReferenceForce;
 
 /// Draws [`force_svg`] into a file.
 ///
@@ -26,8 +27,9 @@ pub fn force(
     path: impl AsRef<Path>,
     title: &str,
     records: &[StepRecord],
+    reference: &ReferenceForce,
 ) -> Result<(), OutputError> {
-    store(path.as_ref(), force_svg(title, records))
+    store(path.as_ref(), force_svg(title, records, reference))
 }
 
 /// Draws [`shape_svg`] into a file.
