@@ -8,6 +8,7 @@
 
 mod agreement;
 mod atomic;
+pub mod diagnosis;
 pub mod error;
 pub mod fields;
 pub mod folder;
@@ -24,6 +25,7 @@ pub mod vtkhdf;
 mod vtkhdf_layout;
 mod vtkhdf_steps;
 
+pub use diagnosis::Diagnosis;
 pub use error::OutputError;
 pub use fields::{ContactFile, ContactSample, FieldSample, SheetFile, SheetPart, ToolsFile};
 pub use folder::OutputDir;

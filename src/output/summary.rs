@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::{OutputError, StepRecord, VerdictTable, atomic};
+use super::{Diagnosis, OutputError, StepRecord, VerdictTable, atomic};
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -150,6 +150,10 @@ pub struct Summary {
     pub status: Status,
     /// Where and why, if it did not finish.
     pub reason: Option<String>,
+    /// The same in detail, and what can be done.
+    pub diagnosis: Option<Diagnosis>,
+    /// What the run says about itself that no verdict says.
+    pub notes: Vec<String>,
     /// The last accepted step, if there was one.
     #[serde(rename = "final")]
     pub last: Option<StepRecord>,
@@ -249,6 +253,8 @@ mod tests {
         let summary = Summary {
             status: Status::NotConverged,
             reason: Some("step 12 at t = 40 ms".into()),
+            diagnosis: None,
+            notes: Vec::new(),
             last: Some(StepRecord {
                 gap_A_mm: f64::NAN,
                 force_N: 151.5,

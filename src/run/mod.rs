@@ -5,6 +5,7 @@
 mod blas;
 mod conclusion;
 mod defaults;
+mod diagnosis;
 mod judgement;
 mod ledger;
 mod linear;
@@ -16,6 +17,7 @@ mod springback;
 mod static_path;
 mod step_size;
 mod unread;
+mod watch;
 
 use std::rc::Rc;
 use std::time::Instant;
@@ -34,6 +36,7 @@ pub use simulation::Counts;
 pub use springback::{Springback, springback};
 pub use static_path::StaticPath;
 pub use step_size::StepControl;
+pub use watch::{Course, Flip};
 
 use crate::case::{self, Case, CaseError};
 use crate::output::{OutputError, number};

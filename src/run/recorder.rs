@@ -60,7 +60,7 @@ impl Recorder {
             rank: comm.rank(),
         };
         Ok(Self {
-            monitor: Monitor::new(comm.rank(), stdout(), case.loading.motion().end()),
+            monitor: Monitor::new(comm.rank(), stdout(), case.loading.motion()),
             history,
             sheet: SheetFile::create(folder.fields(), comm, &part)?,
             part,
@@ -93,9 +93,9 @@ impl Recorder {
         (self.folder, self.records)
     }
 
-    /// Shows the header of the step lines.
-    pub fn begin(&mut self) {
-        self.monitor.header();
+    /// Shows the header of the step lines of a run that goes on from time `t` (ms).
+    pub fn begin(&mut self, t: f64) {
+        self.monitor.header(t);
     }
 
     /// Shows a text to the user, once over all ranks.
