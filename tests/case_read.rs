@@ -261,7 +261,7 @@ fn whole_numbers_words_and_flags_are_what_they_are() {
 fn an_option_without_its_value_is_refused() {
     for (name, _) in Case::reference().unwrap().options() {
         let read = read(&[(name, "")]);
-        let is_flag = ["extrapolate", "monitor_iterations"].contains(&name);
+        let is_flag = ["extrapolate", "monitor_iterations", "dry_run"].contains(&name);
         assert_eq!(read.is_ok(), is_flag, "-{name}");
     }
     assert_eq!(

@@ -244,7 +244,11 @@ fn failed(case: &Case, diagnosis: &Diagnosis, outcome: &Outcome, notes: &[String
     failed_banner(&diagnosis.place, &diagnosis.cause, &facts)
 }
 
-/// The same name before each line.
+/// The same name before each line; none before one that tells of others left out.
 fn named(name: &'static str, lines: &[String]) -> Vec<(&'static str, String)> {
-    lines.iter().map(|line| (name, line.clone())).collect()
+    let shown = |line: &String| if line.starts_with("...") { "" } else { name };
+    lines
+        .iter()
+        .map(|line| (shown(line), line.clone()))
+        .collect()
 }

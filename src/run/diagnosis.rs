@@ -4,7 +4,7 @@
 use petsc::SnesReason;
 
 use super::refusal::Refusal;
-use super::watch::{Course, Flip};
+use super::solve_watch::{Course, Flip};
 use super::{Failure, defaults};
 use crate::case::{Case, Dynamics};
 use crate::contact::ContactLocation;

@@ -6,6 +6,7 @@ mod blas;
 mod conclusion;
 mod defaults;
 mod diagnosis;
+mod dry_run;
 mod judgement;
 mod ledger;
 mod linear;
@@ -13,11 +14,11 @@ mod newton;
 mod recorder;
 mod refusal;
 mod simulation;
+mod solve_watch;
 mod springback;
 mod static_path;
 mod step_size;
 mod unread;
-mod watch;
 
 use std::rc::Rc;
 use std::time::Instant;
@@ -33,10 +34,10 @@ pub use newton::Damping;
 pub use recorder::Recorder;
 pub use refusal::Refusal;
 pub use simulation::Counts;
+pub use solve_watch::{Course, Flip};
 pub use springback::{Springback, springback};
 pub use static_path::StaticPath;
 pub use step_size::StepControl;
-pub use watch::{Course, Flip};
 
 use crate::case::{self, Case, CaseError};
 use crate::output::{OutputError, number};
@@ -117,6 +118,9 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
         return defaults::show_help(case, comm).map(|()| None);
     }
     unread::refuse_slips()?;
+    if case.output.dry_run {
+        return dry_run::describe(case, comm).map(|()| None);
+    }
     let problem = Problem::new(case);
     let motion = case.loading.motion();
     let landmarks = landmarks(case)?;

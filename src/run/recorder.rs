@@ -11,7 +11,7 @@ use crate::output::{
     ContactFile, ContactSample, FieldSample, History, Monitor, OutputDir, OutputError, SheetFile,
     SheetPart, StepRecord, ToolsFile,
 };
-use crate::system::{NodeSample, System, Tool};
+use crate::system::{NodeSample, Problem, System, Tool};
 use crate::tool::PunchMotion;
 
 /// Spacing of the points of the drawn tools, mm.
@@ -140,17 +140,7 @@ impl Recorder {
         let local = system.local();
         let problem = local.problem();
         let depth = self.motion.depth(t);
-        let right_half = |tool: &Option<Arc<Tool>>| -> Vec<[f64; 2]> {
-            let points = outline(tool.as_deref(), FINE_TOOL_SPACING);
-            points
-                .into_iter()
-                .filter(|point| point[0] > -1e-9)
-                .collect()
-        };
-        let die = right_half(&problem.lower_tool);
-        let mut punch = right_half(&problem.upper_tool);
-        // The punch is walked from its side to its tip; the figure wants it the other way.
-        punch.reverse();
+        let (die, punch) = right_halves(problem);
         let figure = Shape {
             title: &format!("{label}: punch down by {depth:.2} mm"),
             elements: &elements,
@@ -224,6 +214,21 @@ fn field_sample(node: &NodeSample) -> FieldSample {
         gap: node.gap,
         contact_status: i32::from(node.contact_pressure > 0.0),
     }
+}
+
+/// The right halves of die and punch in their first positions, from the axis outwards, mm.
+pub(super) fn right_halves(problem: &Problem) -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
+    let right_half = |tool: &Option<Arc<Tool>>| -> Vec<[f64; 2]> {
+        let points = outline(tool.as_deref(), FINE_TOOL_SPACING);
+        points
+            .into_iter()
+            .filter(|point| point[0] > -1e-9)
+            .collect()
+    };
+    let mut punch = right_half(&problem.upper_tool);
+    // The punch is walked from its side to its tip.
+    punch.reverse();
+    (right_half(&problem.lower_tool), punch)
 }
 
 /// Outline of a tool in its first position, with `spacing` (mm) between points.

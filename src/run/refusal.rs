@@ -4,7 +4,7 @@ use std::fmt;
 
 use petsc::SnesReason;
 
-use super::watch::{Course, Flip, SolveWatch};
+use super::solve_watch::{Course, Flip, SolveWatch};
 use crate::mesh::SurfaceSide;
 use crate::output::number;
 use crate::system::{ContactPlace, FailedElement, System};

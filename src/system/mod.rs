@@ -2,6 +2,7 @@
 //! and what can be measured on a state; keeps the committed history of the material points.
 //! Never: decides on steps, prints, or writes files.
 
+mod census;
 mod condensed;
 mod distributed;
 mod elimination;
@@ -16,6 +17,7 @@ mod sample;
 mod seed;
 mod share;
 
+pub use census::Share;
 pub use condensed::CondensedSolve;
 pub use distributed::{System, SystemError};
 pub use evaluate::ElementFailure;

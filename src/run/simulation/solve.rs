@@ -7,7 +7,7 @@ use petsc::{
 use super::super::ledger::LEAST_FORCE;
 use super::super::newton::limited_length;
 use super::Simulation;
-use crate::run::watch::SolveWatch;
+use crate::run::solve_watch::SolveWatch;
 
 /// Largest imbalance and largest pull of a contact point after a converged solve, as a share of the
 /// last punch force.
