@@ -127,6 +127,7 @@ fn what_is_shown_reads_back_as_the_same_case() {
         ("output_dir", "elsewhere"),
         ("output_every", "0"),
         ("monitor_iterations", "true"),
+        ("dry_run", "true"),
     ];
     let case = read(&given).unwrap();
     let shown: BTreeMap<String, String> = case

@@ -130,6 +130,8 @@ pub struct Provenance {
     pub mpi_ranks: u32,
     /// Compiler, profile and the like; nothing that names the machine.
     pub build: BTreeMap<String, String>,
+    /// SHA-256 of what the run was made from, by name.
+    pub inputs: BTreeMap<String, String>,
     /// Every option that has a value, default or not.
     pub options: BTreeMap<String, String>,
 }
@@ -277,6 +279,7 @@ mod tests {
                 petsc_version: "3.18.5".into(),
                 mpi_ranks: 2,
                 build: BTreeMap::new(),
+                inputs: BTreeMap::new(),
                 options: BTreeMap::from([("friction".into(), "0.1342".into())]),
             },
             timing: Timing {

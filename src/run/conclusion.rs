@@ -8,7 +8,7 @@ use petsc::Session;
 use super::blas::Blas;
 use super::diagnosis::{diagnose, notes};
 use super::judgement::{BALANCE_LIMIT, CONE_LIMIT, PULL_LIMIT, judge};
-use super::{Failure, Outcome, RunError, unread};
+use super::{Failure, Outcome, RunError, inputs, unread};
 use crate::case::Case;
 use crate::output::monitor::{failed_banner, finished_banner};
 use crate::output::number;
@@ -127,6 +127,7 @@ fn summarise(
                     Blas::loaded().map_or_else(|| text("not known"), |blas| blas.to_string()),
                 ),
             ]),
+            inputs: inputs::checksums(case),
             options: case
                 .options()
                 .into_iter()

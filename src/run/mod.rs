@@ -7,6 +7,7 @@ mod conclusion;
 mod defaults;
 mod diagnosis;
 mod dry_run;
+mod inputs;
 mod judgement;
 mod ledger;
 mod linear;
