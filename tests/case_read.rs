@@ -127,6 +127,7 @@ fn what_is_shown_reads_back_as_the_same_case() {
         ("output_dir", "elsewhere"),
         ("output_every", "0"),
         ("monitor_iterations", "true"),
+        ("dry_run", "true"),
     ];
     let case = read(&given).unwrap();
     let shown: BTreeMap<String, String> = case
@@ -261,7 +262,7 @@ fn whole_numbers_words_and_flags_are_what_they_are() {
 fn an_option_without_its_value_is_refused() {
     for (name, _) in Case::reference().unwrap().options() {
         let read = read(&[(name, "")]);
-        let is_flag = ["extrapolate", "monitor_iterations"].contains(&name);
+        let is_flag = ["extrapolate", "monitor_iterations", "dry_run"].contains(&name);
         assert_eq!(read.is_ok(), is_flag, "-{name}");
     }
     assert_eq!(

@@ -14,6 +14,7 @@ mod option;
 mod option_file;
 mod provenance;
 mod reference;
+mod reference_force;
 mod table;
 mod unused;
 
@@ -29,4 +30,5 @@ pub use model::{
 };
 pub use provenance::Difference;
 pub use reference::{Instant, ReferenceValue, Tolerance};
+pub use reference_force::ReferenceForce;
 pub use unused::check_unused;

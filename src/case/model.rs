@@ -203,6 +203,8 @@ pub struct Output {
     pub every: usize,
     /// Whether every Newton iteration is shown.
     pub iterations: bool,
+    /// Whether the model is only shown.
+    pub dry_run: bool,
 }
 
 impl Case {
@@ -259,6 +261,7 @@ impl Case {
                 dir: table::OUTPUT_DIR.read(options)?,
                 every: table::OUTPUT_EVERY.read(options)?,
                 iterations: table::MONITOR_ITERATIONS.read(options)?,
+                dry_run: table::DRY_RUN.read(options)?,
             },
         };
         geometry::check(&case)?;

@@ -156,6 +156,12 @@ impl Hardening {
             .saturating_sub(1)
     }
 
+    /// Number of straight pieces, and the plastic strain at which the last of them begins.
+    pub fn pieces(&self) -> (usize, f64) {
+        let count = self.segments.len();
+        (count, self.segments[count - 1].start)
+    }
+
     /// Initial yield stress, MPa.
     pub fn initial(&self) -> f64 {
         self.segments[0].stress

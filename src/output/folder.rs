@@ -66,6 +66,11 @@ impl OutputDir {
         self.file("summary.json")
     }
 
+    /// `report.html`, see [`super::Report`].
+    pub fn report(&self) -> PathBuf {
+        self.file("report.html")
+    }
+
     /// `force.svg`, see [`super::plot::force`].
     pub fn force_figure(&self) -> PathBuf {
         self.file("force.svg")

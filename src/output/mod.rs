@@ -8,6 +8,7 @@
 
 mod agreement;
 mod atomic;
+pub mod diagnosis;
 pub mod error;
 pub mod fields;
 pub mod folder;
@@ -17,12 +18,14 @@ pub mod monitor;
 mod number;
 pub mod plot;
 pub mod record;
+pub mod report;
 pub mod summary;
 pub mod verdict;
 pub mod vtkhdf;
 mod vtkhdf_layout;
 mod vtkhdf_steps;
 
+pub use diagnosis::Diagnosis;
 pub use error::OutputError;
 pub use fields::{ContactFile, ContactSample, FieldSample, SheetFile, SheetPart, ToolsFile};
 pub use folder::OutputDir;
@@ -30,5 +33,6 @@ pub use history::History;
 pub use monitor::Monitor;
 pub(crate) use number::number;
 pub use record::StepRecord;
+pub use report::Report;
 pub use summary::Summary;
 pub use verdict::{Tolerance, Verdict, VerdictRow, VerdictTable};

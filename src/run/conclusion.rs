@@ -6,13 +6,14 @@ use mpi::traits::Communicator;
 use petsc::Session;
 
 use super::blas::Blas;
-use super::judgement::{BALANCE_LIMIT, PULL_LIMIT, judge};
-use super::{Failure, Outcome, Refusal, RunError, unread};
+use super::diagnosis::{diagnose, notes};
+use super::judgement::{BALANCE_LIMIT, CONE_LIMIT, PULL_LIMIT, judge};
+use super::{Failure, Outcome, RunError, inputs, unread};
 use crate::case::Case;
 use crate::output::monitor::{failed_banner, finished_banner};
 use crate::output::number;
 use crate::output::summary::{Certificates, Counts, Provenance, Status, Summary, Timing};
-use crate::output::{StepRecord, VerdictTable};
+use crate::output::{Diagnosis, Report, StepRecord, VerdictTable};
 
 /// Judges, writes and shows what came out; tells whether the run finished and all verdicts hold.
 /// Collective.
@@ -26,10 +27,11 @@ pub fn conclude(
     comm: &impl Communicator,
 ) -> Result<bool, RunError> {
     let verdicts = judge(case, outcome.recorder.records(), outcome.failure.is_none())?;
+    let reference = case.reference_force()?;
+    let summary = summarise(case, &outcome, session, comm, verdicts.clone());
     if comm.rank() == 0 {
-        let summary = summarise(case, &outcome, session, comm, verdicts.clone());
         summary.write(outcome.recorder.folder().summary())?;
-        outcome.recorder.force_figure()?;
+        outcome.recorder.force_figure(&reference)?;
     }
     let mut text = if verdicts.rows.is_empty() {
         "\n".to_owned()
@@ -37,11 +39,22 @@ pub fn conclude(
         format!("\n{}\n", verdicts.text())
     };
     text.push_str(&unread::warnings()?);
-    match &outcome.failure {
-        None => text.push_str(&finished(case, &outcome, &verdicts)),
-        Some(failure) => text.push_str(&failed(case, failure, &outcome)),
+    match &summary.diagnosis {
+        None => text.push_str(&finished(case, &outcome, &verdicts, &summary.notes)),
+        Some(diagnosis) => text.push_str(&failed(case, diagnosis, &outcome, &summary.notes)),
     }
     outcome.recorder.show(&text);
+    // The page is made from the files of the run, which all ranks must have closed.
+    let (folder, records) = outcome.recorder.close();
+    if comm.rank() == 0 {
+        let report = Report {
+            case,
+            summary: &summary,
+            records: &records,
+            reference: &reference,
+        };
+        report.write(&folder)?;
+    }
     Ok(outcome.failure.is_none() && verdicts.failures() == 0)
 }
 
@@ -71,6 +84,11 @@ fn summarise(
     Summary {
         status,
         reason: outcome.failure.as_ref().map(Failure::sentence),
+        diagnosis: outcome
+            .failure
+            .as_ref()
+            .map(|failure| diagnose(case, failure, outcome.counts.steps)),
+        notes: notes(case, records),
         last: records.last().copied(),
         angles_deg: by_name(|angle| angle.degrees),
         angle_fit_residuals_mm: by_name(|angle| angle.fit_residual),
@@ -88,6 +106,7 @@ fn summarise(
             ),
             (text("pull"), PULL_LIMIT),
             (text("balance"), BALANCE_LIMIT),
+            (text("cone"), CONE_LIMIT),
         ]),
         worst: certificates.worst(),
         verdicts,
@@ -108,6 +127,7 @@ fn summarise(
                     Blas::loaded().map_or_else(|| text("not known"), |blas| blas.to_string()),
                 ),
             ]),
+            inputs: inputs::checksums(case),
             options: case
                 .options()
                 .into_iter()
@@ -201,42 +221,35 @@ fn effort(case: &Case, outcome: &Outcome) -> Vec<(&'static str, String)> {
     facts
 }
 
-fn finished(case: &Case, outcome: &Outcome, verdicts: &VerdictTable) -> String {
+fn finished(case: &Case, outcome: &Outcome, verdicts: &VerdictTable, notes: &[String]) -> String {
     let title = match verdicts.failures() {
         0 => "every verdict holds".to_owned(),
         1 => "but 1 verdict does not hold".to_owned(),
         count => format!("but {count} verdicts do not hold"),
     };
-    finished_banner(&title, &effort(case, outcome))
-}
-
-/// The refused solves, the first and the last ones if there are many.
-fn tried(refusals: &[Refusal]) -> Vec<(&'static str, String)> {
-    const FIRST: usize = 1;
-    const LAST: usize = 3;
-    let show = |refusal: &Refusal| ("tried", refusal.to_string());
-    let hidden = refusals.len().saturating_sub(FIRST + LAST);
-    if hidden < 2 {
-        return refusals.iter().map(show).collect();
-    }
-    let mut facts: Vec<_> = refusals[..FIRST].iter().map(show).collect();
-    facts.push(("", format!("... {hidden} more ...")));
-    facts.extend(refusals[FIRST + hidden..].iter().map(show));
-    facts
-}
-
-fn failed(case: &Case, failure: &Failure, outcome: &Outcome) -> String {
-    let place = format!(
-        "after step {}, t = {:.4} ms, punch down by {:.4} mm",
-        outcome.counts.steps, failure.time, failure.depth
-    );
-    let mut facts = tried(&failure.refusals);
-    facts.push((
-        "try",
-        "a smaller -dt_max, more -contact_points_per_edge, a larger \
-                        -contact_compliance or a finer mesh"
-            .to_owned(),
-    ));
+    let mut facts = named("note", notes);
     facts.extend(effort(case, outcome));
-    failed_banner(&place, &failure.reason, &facts)
+    finished_banner(&title, &facts)
+}
+
+fn failed(case: &Case, diagnosis: &Diagnosis, outcome: &Outcome, notes: &[String]) -> String {
+    let mut facts = named("seen", &diagnosis.observed);
+    facts.extend(named("tried", &diagnosis.tried));
+    facts.extend(named("try", &diagnosis.remedies));
+    facts.push((
+        "read",
+        "docs/it-does-not-converge.md, and report.html beside the results".to_owned(),
+    ));
+    facts.extend(named("note", notes));
+    facts.extend(effort(case, outcome));
+    failed_banner(&diagnosis.place, &diagnosis.cause, &facts)
+}
+
+/// The same name before each line; none before one that tells of others left out.
+fn named(name: &'static str, lines: &[String]) -> Vec<(&'static str, String)> {
+    let shown = |line: &String| if line.starts_with("...") { "" } else { name };
+    lines
+        .iter()
+        .map(|line| (shown(line), line.clone()))
+        .collect()
 }

@@ -5,6 +5,9 @@
 mod blas;
 mod conclusion;
 mod defaults;
+mod diagnosis;
+mod dry_run;
+mod inputs;
 mod judgement;
 mod ledger;
 mod linear;
@@ -12,6 +15,7 @@ mod newton;
 mod recorder;
 mod refusal;
 mod simulation;
+mod solve_watch;
 mod springback;
 mod static_path;
 mod step_size;
@@ -31,6 +35,7 @@ pub use newton::Damping;
 pub use recorder::Recorder;
 pub use refusal::Refusal;
 pub use simulation::Counts;
+pub use solve_watch::{Course, Flip};
 pub use springback::{Springback, springback};
 pub use static_path::StaticPath;
 pub use step_size::StepControl;
@@ -115,6 +120,9 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     }
     unread::refuse_slips()?;
     defaults::read_options(case, comm)?;
+    if case.output.dry_run {
+        return dry_run::describe(case, comm).map(|()| None);
+    }
     let problem = Problem::new(case);
     let motion = case.loading.motion();
     let landmarks = landmarks(case)?;

@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use mpi::traits::Communicator;
 
-use crate::case::Case;
+use crate::case::{Case, ReferenceForce};
 use crate::output::plot::{self, DeformedElement, Shape, View, gather_elements};
 use crate::output::{
     ContactFile, ContactSample, FieldSample, History, Monitor, OutputDir, OutputError, SheetFile,
     SheetPart, StepRecord, ToolsFile,
 };
-use crate::system::{NodeSample, System, Tool};
+use crate::system::{NodeSample, Problem, System, Tool};
 use crate::tool::PunchMotion;
 
 /// Spacing of the points of the drawn tools, mm.
@@ -60,7 +60,7 @@ impl Recorder {
             rank: comm.rank(),
         };
         Ok(Self {
-            monitor: Monitor::new(comm.rank(), stdout(), case.loading.motion().end()),
+            monitor: Monitor::new(comm.rank(), stdout(), case.loading.motion()),
             history,
             sheet: SheetFile::create(folder.fields(), comm, &part)?,
             part,
@@ -88,9 +88,14 @@ impl Recorder {
         &self.records
     }
 
-    /// Shows the header of the step lines.
-    pub fn begin(&mut self) {
-        self.monitor.header();
+    /// Closes the files; what is left is where they are, and the rows. Collective.
+    pub fn close(self) -> (OutputDir, Vec<StepRecord>) {
+        (self.folder, self.records)
+    }
+
+    /// Shows the header of the step lines of a run that goes on from time `t` (ms).
+    pub fn begin(&mut self, t: f64) {
+        self.monitor.header(t);
     }
 
     /// Shows a text to the user, once over all ranks.
@@ -135,17 +140,7 @@ impl Recorder {
         let local = system.local();
         let problem = local.problem();
         let depth = self.motion.depth(t);
-        let right_half = |tool: &Option<Arc<Tool>>| -> Vec<[f64; 2]> {
-            let points = outline(tool.as_deref(), FINE_TOOL_SPACING);
-            points
-                .into_iter()
-                .filter(|point| point[0] > -1e-9)
-                .collect()
-        };
-        let die = right_half(&problem.lower_tool);
-        let mut punch = right_half(&problem.upper_tool);
-        // The punch is walked from its side to its tip; the figure wants it the other way.
-        punch.reverse();
+        let (die, punch) = right_halves(problem);
         let figure = Shape {
             title: &format!("{label}: punch down by {depth:.2} mm"),
             elements: &elements,
@@ -159,11 +154,11 @@ impl Recorder {
         plot::shape(self.folder.file(&name), &figure)
     }
 
-    /// Draws force against stroke, on rank 0.
+    /// Draws force against stroke beside the reference, on rank 0.
     ///
     /// # Errors
     /// If the figure cannot be written.
-    pub fn force_figure(&self) -> Result<(), OutputError> {
+    pub fn force_figure(&self, reference: &ReferenceForce) -> Result<(), OutputError> {
         if self.history.is_none() || self.records.is_empty() {
             return Ok(());
         }
@@ -171,6 +166,7 @@ impl Recorder {
             self.folder.force_figure(),
             "Force of the punch, whole sheet",
             &self.records,
+            reference,
         )
     }
 
@@ -218,6 +214,21 @@ fn field_sample(node: &NodeSample) -> FieldSample {
         gap: node.gap,
         contact_status: i32::from(node.contact_pressure > 0.0),
     }
+}
+
+/// The right halves of die and punch in their first positions, from the axis outwards, mm.
+pub(super) fn right_halves(problem: &Problem) -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
+    let right_half = |tool: &Option<Arc<Tool>>| -> Vec<[f64; 2]> {
+        let points = outline(tool.as_deref(), FINE_TOOL_SPACING);
+        points
+            .into_iter()
+            .filter(|point| point[0] > -1e-9)
+            .collect()
+    };
+    let mut punch = right_half(&problem.upper_tool);
+    // The punch is walked from its side to its tip.
+    punch.reverse();
+    (right_half(&problem.lower_tool), punch)
 }
 
 /// Outline of a tool in its first position, with `spacing` (mm) between points.

@@ -2,6 +2,7 @@
 //! and what can be measured on a state; keeps the committed history of the material points.
 //! Never: decides on steps, prints, or writes files.
 
+mod census;
 mod condensed;
 mod distributed;
 mod elimination;
@@ -14,7 +15,9 @@ mod problem;
 mod release;
 mod sample;
 mod seed;
+mod share;
 
+pub use census::Share;
 pub use condensed::CondensedSolve;
 pub use distributed::{System, SystemError};
 pub use evaluate::ElementFailure;
@@ -24,3 +27,4 @@ pub use numbering::{Numbering, UNKNOWNS_PER_POINT};
 pub use problem::{Factor, NodalValue, Problem, Tool};
 pub use sample::{ContactPointSample, FieldSampler, NodeSample};
 pub use seed::Seed;
+pub use share::{ContactPlace, FailedElement};

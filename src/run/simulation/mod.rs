@@ -12,6 +12,7 @@ use super::linear::LinearSolve;
 use super::newton::{Damping, TangentInertia};
 use super::recorder::Recorder;
 use super::refusal::Refusal;
+use super::solve_watch::SolveWatch;
 use super::springback::{Springback, springback};
 use super::step_size::StepControl;
 use super::{RunError, defaults};
@@ -29,6 +30,10 @@ pub(super) struct Simulation {
     ledger: RefCell<Ledger>,
     damping: RefCell<Damping>,
     inertia: Rc<TangentInertia>,
+    watch: RefCell<SolveWatch>,
+    /// Absolute tolerance on the residual norm, mm, and most iterations of a solve.
+    tolerance: f64,
+    most_iterations: usize,
     /// Solution before the last accepted step, and the length of that step (ms); none at the start
     /// and where the punch turns.
     before: RefCell<Option<(Vector, f64)>>,
@@ -97,6 +102,9 @@ impl Simulation {
             ledger: RefCell::default(),
             damping: RefCell::default(),
             inertia: Rc::new(TangentInertia::own()),
+            watch: RefCell::default(),
+            tolerance: stepping.newton_tolerance,
+            most_iterations: stepping.newton_max_iterations,
             before: RefCell::new(None),
             accepted: RefCell::new(accepted),
             accepted_time: Cell::new(0.0),
@@ -130,7 +138,7 @@ impl Simulation {
         ts.set_time_step(self.control.borrow().planned())?;
         ts.set_max_time(self.control.borrow().end())?;
         self.write_fields(0.0, &self.accepted.borrow(), None)?;
-        self.recorder.borrow_mut().begin();
+        self.recorder.borrow_mut().begin(self.accepted_time.get());
         let reason = self.solve(&mut ts)?;
         let factor_solver = linear.factor_solver(ts.snes()?)?;
         Ok(Finish {
@@ -238,14 +246,7 @@ impl Simulation {
         counts.newton += u64::from(iterations);
         if reason.is_diverged() {
             counts.refused += 1;
-            self.refusals.borrow_mut().push(Refusal {
-                time: t,
-                dt: ts.time_step()?,
-                reason,
-                iterations,
-                norms: self.damping.borrow().norms().to_vec(),
-                element: self.system.take_failure(),
-            });
+            self.refuse(t, ts.time_step()?, reason, iterations);
         }
         self.counts.set(counts);
         // PETSc would go on shortening the step, or repeating the first one: stop it where it must not.
@@ -254,6 +255,22 @@ impl Simulation {
             ts.set_max_step_rejections(0)?;
         }
         Ok(())
+    }
+
+    /// Notes a solve that did not converge, and shows it. Collective.
+    fn refuse(&self, t: f64, dt: f64, reason: SnesReason, iterations: u32) {
+        let watch = self.watch.borrow();
+        let refusal = Refusal::new(
+            &self.system,
+            &watch,
+            (t, dt),
+            reason,
+            iterations,
+            self.tolerance,
+        );
+        let mut recorder = self.recorder.borrow_mut();
+        recorder.show(&format!("         refused: {refusal}\n"));
+        self.refusals.borrow_mut().push(refusal);
     }
 
     fn after_step(&self, ts: &mut TsRef) -> Result<(), CallbackError> {
