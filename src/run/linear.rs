@@ -26,6 +26,14 @@ const CONDENSED_DEFAULTS: &[(&str, &str)] = &[
     ("condensed_mat_mumps_icntl_7", "5"),
 ];
 
+/// Whether the option has the value that this program gave it for the linear solves.
+pub(super) fn is_default(name: &str, value: Option<&str>) -> bool {
+    PETSC_DEFAULTS
+        .iter()
+        .chain(CONDENSED_DEFAULTS)
+        .any(|(ours, default)| *ours == name && value == Some(*default))
+}
+
 /// Options that need the entries of the Jacobian even if our solve is used.
 const NEED_ENTRIES: &[&str] = &[
     "ksp_type",

@@ -1,7 +1,7 @@
 //! Options nobody read: ours are read first, so that a slip of the pen is found before the run; what
 //! PETSc did not read is known after it.
 
-use super::{RunError, defaults};
+use super::{RunError, defaults, linear};
 use crate::case::{CaseError, check_unused};
 
 /// Options of PETSc with the only value that leaves the steps to this program: another one would make them ever shorter,
@@ -34,7 +34,9 @@ pub(super) fn refuse_slips() -> Result<(), RunError> {
 pub(super) fn warnings() -> Result<String, RunError> {
     let mut unused = petsc::options::unused()?;
     unused.retain(|(name, value)| {
-        !defaults::is_default(name, value.as_deref()) && !LATE.contains(&name.as_str())
+        let value = value.as_deref();
+        let ours = defaults::is_default(name, value) || linear::is_default(name, value);
+        !ours && !LATE.contains(&name.as_str())
     });
     let (_, warnings) = check_unused(&unused);
     Ok(warnings
