@@ -9,10 +9,12 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, CommunicatorCollectives};
 use petsc::{Session, options};
 use ssnp155::case::{Case, OptionSource, check_arguments, check_ranks, help_text};
-use ssnp155::run::{conclude, simulate};
+use ssnp155::run::{Ending, conclude, simulate};
 
 /// Exit code of a run that did not finish, or whose verdicts do not hold.
 const NOT_HELD: u8 = 1;
+/// Exit code of a run that was ended on request and can go on.
+const INTERRUPTED: u8 = 3;
 /// Exit code of a run that could not be made.
 const REFUSED: u8 = 2;
 
@@ -25,8 +27,9 @@ fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().collect();
     // A panic on one rank would leave the others waiting for ever, so it ends them all.
     match catch_unwind(AssertUnwindSafe(|| program(&world, &args))) {
-        Ok(Ok(true)) => ExitCode::SUCCESS,
-        Ok(Ok(false)) => ExitCode::from(NOT_HELD),
+        Ok(Ok(Ending::Holds)) => ExitCode::SUCCESS,
+        Ok(Ok(Ending::DoesNotHold)) => ExitCode::from(NOT_HELD),
+        Ok(Ok(Ending::Interrupted)) => ExitCode::from(INTERRUPTED),
         Ok(Err(Refused)) => ExitCode::from(REFUSED),
         Err(_) => world.abort(i32::from(REFUSED)),
     }
@@ -35,8 +38,8 @@ fn main() -> ExitCode {
 /// There was no run; the reason has been told.
 struct Refused;
 
-/// Whether the run finished and everything it is judged by holds. Collective.
-fn program(world: &SimpleCommunicator, args: &[String]) -> Result<bool, Refused> {
+/// How the run ended. Collective.
+fn program(world: &SimpleCommunicator, args: &[String]) -> Result<Ending, Refused> {
     agree(world, check_arguments(&args[1..]))?;
     let session = agree(world, Session::with_help(args, &help_text()))?;
     let case = agree(world, Case::read(&PetscOptions))?;
@@ -48,7 +51,7 @@ fn program(world: &SimpleCommunicator, args: &[String]) -> Result<bool, Refused>
     match outcome {
         Some(outcome) => agree(world, conclude(&case, outcome, &session, world)),
         // Help was asked for, and given.
-        None => Ok(true),
+        None => Ok(Ending::Holds),
     }
 }
 

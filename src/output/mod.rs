@@ -7,7 +7,9 @@
 //! closes its file when it is dropped, so drop them all before the MPI session ends.
 
 mod agreement;
+mod arrays;
 mod atomic;
+pub mod checkpoint;
 pub mod error;
 pub mod fields;
 pub mod folder;
@@ -20,9 +22,12 @@ pub mod record;
 pub mod summary;
 pub mod verdict;
 pub mod vtkhdf;
+mod vtkhdf_earlier;
 mod vtkhdf_layout;
 mod vtkhdf_steps;
 
+pub(crate) use agreement::agree;
+pub use arrays::Arrays;
 pub use error::OutputError;
 pub use fields::{ContactFile, ContactSample, FieldSample, SheetFile, SheetPart, ToolsFile};
 pub use folder::OutputDir;

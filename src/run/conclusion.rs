@@ -7,15 +7,25 @@ use petsc::Session;
 
 use super::blas::Blas;
 use super::judgement::{BALANCE_LIMIT, PULL_LIMIT, judge};
-use super::{Failure, Outcome, Refusal, RunError, unread};
+use super::{Failure, Interruption, Outcome, Refusal, RunError, unread};
 use crate::case::Case;
-use crate::output::monitor::{failed_banner, finished_banner};
+use crate::output::monitor::{failed_banner, finished_banner, interrupted_banner};
 use crate::output::number;
 use crate::output::summary::{Certificates, Counts, Provenance, Status, Summary, Timing};
 use crate::output::{StepRecord, VerdictTable};
 
-/// Judges, writes and shows what came out; tells whether the run finished and all verdicts hold.
-/// Collective.
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// It finished, and every verdict holds.
+    Holds,
+    /// It could not be solved to the end, or a verdict does not hold.
+    DoesNotHold,
+    /// It was ended on request, and can go on.
+    Interrupted,
+}
+
+/// Judges, writes and shows what came out. Collective.
 ///
 /// # Errors
 /// If a file cannot be written.
@@ -24,8 +34,9 @@ pub fn conclude(
     mut outcome: Outcome,
     session: &Session,
     comm: &impl Communicator,
-) -> Result<bool, RunError> {
-    let verdicts = judge(case, outcome.recorder.records(), outcome.failure.is_none())?;
+) -> Result<Ending, RunError> {
+    let finished = outcome.failure.is_none() && outcome.interruption.is_none();
+    let verdicts = judge(case, outcome.recorder.records(), finished)?;
     if comm.rank() == 0 {
         let summary = summarise(case, &outcome, session, comm, verdicts.clone());
         summary.write(outcome.recorder.folder().summary())?;
@@ -37,12 +48,20 @@ pub fn conclude(
         format!("\n{}\n", verdicts.text())
     };
     text.push_str(&unread::warnings()?);
-    match &outcome.failure {
-        None => text.push_str(&finished(case, &outcome, &verdicts)),
-        Some(failure) => text.push_str(&failed(case, failure, &outcome)),
-    }
+    let (banner, ending) = match (&outcome.failure, &outcome.interruption) {
+        (Some(failure), _) => (failed(case, failure, &outcome), Ending::DoesNotHold),
+        (None, Some(stop)) => (interrupted(case, stop, &outcome), Ending::Interrupted),
+        (None, None) if verdicts.failures() == 0 => {
+            (banner_of_end(case, &outcome, &verdicts), Ending::Holds)
+        }
+        (None, None) => (
+            banner_of_end(case, &outcome, &verdicts),
+            Ending::DoesNotHold,
+        ),
+    };
+    text.push_str(&banner);
     outcome.recorder.show(&text);
-    Ok(outcome.failure.is_none() && verdicts.failures() == 0)
+    Ok(ending)
 }
 
 fn summarise(
@@ -57,10 +76,10 @@ fn summarise(
     records
         .iter()
         .for_each(|record| certificates.observe(record));
-    let status = if outcome.failure.is_none() {
-        Status::Finished
-    } else {
-        Status::NotConverged
+    let (status, reason) = match (&outcome.failure, &outcome.interruption) {
+        (Some(failure), _) => (Status::NotConverged, Some(failure.sentence())),
+        (None, Some(stop)) => (Status::Interrupted, Some(stop.sentence())),
+        (None, None) => (Status::Finished, None),
     };
     let text = |value: &str| value.to_owned();
     let angles = angles(case, outcome);
@@ -70,7 +89,7 @@ fn summarise(
     };
     Summary {
         status,
-        reason: outcome.failure.as_ref().map(Failure::sentence),
+        reason,
         last: records.last().copied(),
         angles_deg: by_name(|angle| angle.degrees),
         angle_fit_residuals_mm: by_name(|angle| angle.fit_residual),
@@ -201,13 +220,32 @@ fn effort(case: &Case, outcome: &Outcome) -> Vec<(&'static str, String)> {
     facts
 }
 
-fn finished(case: &Case, outcome: &Outcome, verdicts: &VerdictTable) -> String {
+fn banner_of_end(case: &Case, outcome: &Outcome, verdicts: &VerdictTable) -> String {
     let title = match verdicts.failures() {
         0 => "every verdict holds".to_owned(),
         1 => "but 1 verdict does not hold".to_owned(),
         count => format!("but {count} verdicts do not hold"),
     };
     finished_banner(&title, &effort(case, outcome))
+}
+
+fn interrupted(case: &Case, stop: &Interruption, outcome: &Outcome) -> String {
+    let place = format!(
+        "after step {}, t = {:.4} ms, punch down by {:.4} mm",
+        outcome.counts.steps,
+        stop.time,
+        case.loading.motion().depth(stop.time)
+    );
+    let resume = format!(
+        "the same options with -restart, from {}",
+        stop.checkpoint.display()
+    );
+    interrupted_banner(
+        &place,
+        &stop.cause.sentence(),
+        &resume,
+        &effort(case, outcome),
+    )
 }
 
 /// The refused solves, the first and the last ones if there are many.
@@ -237,6 +275,13 @@ fn failed(case: &Case, failure: &Failure, outcome: &Outcome) -> String {
                         -contact_compliance or a finer mesh"
             .to_owned(),
     ));
+    if let Some(path) = &failure.checkpoint {
+        let advice = format!(
+            "with other options for steps and solver, -restart {}",
+            path.display()
+        );
+        facts.push(("resume", advice));
+    }
     facts.extend(effort(case, outcome));
     failed_banner(&place, &failure.reason, &facts)
 }

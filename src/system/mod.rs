@@ -14,6 +14,7 @@ mod problem;
 mod release;
 mod sample;
 mod seed;
+mod snapshot;
 
 pub use condensed::CondensedSolve;
 pub use distributed::{System, SystemError};
@@ -24,3 +25,4 @@ pub use numbering::{Numbering, UNKNOWNS_PER_POINT};
 pub use problem::{Factor, NodalValue, Problem, Tool};
 pub use sample::{ContactPointSample, FieldSampler, NodeSample};
 pub use seed::Seed;
+pub use snapshot::Snapshot;
