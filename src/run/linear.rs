@@ -24,6 +24,9 @@ const CONDENSED_DEFAULTS: &[(&str, &str)] = &[
     ("condensed_pc_factor_mat_solver_type", "mumps"),
     // METIS: the analysis is done once, so the fill counts.
     ("condensed_mat_mumps_icntl_7", "5"),
+    // No permutation by the entries' sizes: the analysis must not depend on the matrix it happens to see first, which
+    // after a restart is another one. MUMPS would choose none by itself on the benchmark.
+    ("condensed_mat_mumps_icntl_6", "0"),
 ];
 
 /// Options that need the entries of the Jacobian even if our solve is used.
