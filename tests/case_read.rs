@@ -127,6 +127,10 @@ fn what_is_shown_reads_back_as_the_same_case() {
         ("output_dir", "elsewhere"),
         ("output_every", "0"),
         ("monitor_iterations", "true"),
+        ("checkpoint_every", "20"),
+        ("checkpoint_minutes", "7.5"),
+        ("wall_limit", "3600"),
+        ("restart", "results/checkpoint-000123"),
     ];
     let case = read(&given).unwrap();
     let shown: BTreeMap<String, String> = case

@@ -35,8 +35,8 @@ pub fn conclude(
     session: &Session,
     comm: &impl Communicator,
 ) -> Result<Ending, RunError> {
-    let finished = outcome.failure.is_none() && outcome.interruption.is_none();
-    let verdicts = judge(case, outcome.recorder.records(), finished)?;
+    let to_the_end = outcome.failure.is_none() && outcome.interruption.is_none();
+    let verdicts = judge(case, outcome.recorder.records(), to_the_end)?;
     if comm.rank() == 0 {
         let summary = summarise(case, &outcome, session, comm, verdicts.clone());
         summary.write(outcome.recorder.folder().summary())?;
@@ -51,13 +51,15 @@ pub fn conclude(
     let (banner, ending) = match (&outcome.failure, &outcome.interruption) {
         (Some(failure), _) => (failed(case, failure, &outcome), Ending::DoesNotHold),
         (None, Some(stop)) => (interrupted(case, stop, &outcome), Ending::Interrupted),
-        (None, None) if verdicts.failures() == 0 => {
-            (banner_of_end(case, &outcome, &verdicts), Ending::Holds)
+        (None, None) => {
+            let holds = verdicts.failures() == 0;
+            let ending = if holds {
+                Ending::Holds
+            } else {
+                Ending::DoesNotHold
+            };
+            (finished(case, &outcome, &verdicts), ending)
         }
-        (None, None) => (
-            banner_of_end(case, &outcome, &verdicts),
-            Ending::DoesNotHold,
-        ),
     };
     text.push_str(&banner);
     outcome.recorder.show(&text);
@@ -220,7 +222,7 @@ fn effort(case: &Case, outcome: &Outcome) -> Vec<(&'static str, String)> {
     facts
 }
 
-fn banner_of_end(case: &Case, outcome: &Outcome, verdicts: &VerdictTable) -> String {
+fn finished(case: &Case, outcome: &Outcome, verdicts: &VerdictTable) -> String {
     let title = match verdicts.failures() {
         0 => "every verdict holds".to_owned(),
         1 => "but 1 verdict does not hold".to_owned(),

@@ -59,14 +59,14 @@ impl Recorder {
         agree(comm, mine)?;
         let local = system.local();
         let problem = local.problem();
-        let history = match (comm.rank(), resumed) {
-            (0, None) => Some(History::create(folder.history())?),
+        let mine = match (comm.rank(), resumed) {
+            (0, None) => History::create(folder.history()).map(Some),
             (0, Some(earlier)) => {
-                let rows = earlier.path.join(HISTORY);
-                Some(History::resume(folder.history(), &rows)?)
+                History::resume(folder.history(), &earlier.path.join(HISTORY)).map(Some)
             }
-            _ => None,
+            _ => Ok(None),
         };
+        let history = agree(comm, mine)?;
         let points: Vec<[f64; 2]> = local
             .contact_points(0.0, &vec![0.0; local.unknown_count()])
             .iter()
