@@ -55,7 +55,7 @@ impl Kind for WallTime {
     }
 
     fn allowed(&self) -> String {
-        "seconds or hours:minutes:seconds, more than 0, or none".to_owned()
+        "seconds or h:m:s > 0, or none".to_owned()
     }
 }
 
@@ -87,7 +87,7 @@ impl Kind for Restarting {
     }
 
     fn allowed(&self) -> String {
-        "no, newest, or the path of a checkpoint".to_owned()
+        "no, newest, or a path".to_owned()
     }
 
     fn value_may_be_missing(&self) -> bool {
