@@ -1,6 +1,10 @@
-# ssnp155 in two stages: built with Rust, run on plain Debian.
+# ssnp155 in two stages: built with Rust, run on plain Debian. docs/using.md says more; scripts/image.sh tests it.
 #   docker build -t ssnp155 .
-#   docker run --rm -v "$PWD/results:/case/results" ssnp155
+#   mkdir -p results && docker run --rm --user "$(id -u):$(id -g)" -v "$PWD/results:/case/results" ssnp155
+#
+# The compiler and the release of Debian are pinned by the tags, the crates by Cargo.lock. Debian's packages are pinned
+# by the release only: within a stable release they change for security and grave bugs, and an exact version would be
+# gone from the archive after such a change. PETSc stays 3.18, MUMPS 5.5, Open MPI 4.1 and HDF5 1.10 with bookworm.
 FROM docker.io/library/rust:1.95-bookworm AS build
 # A certificate bundle for cargo, where the builder's network needs its own; empty otherwise.
 ARG CARGO_HTTP_CAINFO
@@ -19,11 +23,14 @@ RUN apt-get update && apt-get install -y --no-install-recommends \
     && useradd solver && mkdir /case && chown solver /case
 COPY --from=build /source/target/release/ssnp155 /usr/local/bin/ssnp155
 COPY inputs /usr/local/share/ssnp155/inputs
-# One thread per rank; containers have neither fixed cores nor the rights for single-copy messages.
+# As in scripts/environment.sh: one thread per rank, waiting ranks yield, no fixed cores, and no single-copy messages,
+# for which containers have no rights. Root is the user outside where the engine runs without root.
 ENV OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 \
     OMPI_MCA_hwloc_base_binding_policy=none \
     OMPI_MCA_rmaps_base_oversubscribe=1 \
-    OMPI_MCA_btl_vader_single_copy_mechanism=none
+    OMPI_MCA_mpi_yield_when_idle=1 \
+    OMPI_MCA_btl_vader_single_copy_mechanism=none \
+    OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 USER solver
 WORKDIR /case
 CMD ["mpirun", "-n", "2", "ssnp155", "-options_file", "/usr/local/share/ssnp155/inputs/ssnp155.opts"]

@@ -20,7 +20,7 @@ done
 if [ ${#missing[@]} -eq 0 ]; then
     echo "install: every package is there"
 else
-    echo "install: ${missing[*]}"
+    echo "install: ${missing[*]}, and what they need"
     as_root=()
     if [ "$(id -u)" -ne 0 ]; then
         command -v sudo >/dev/null || {
@@ -31,7 +31,7 @@ else
     fi
     "${as_root[@]}" apt-get update -qq
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-        apt-get install -y -qq --no-install-recommends "${missing[@]}"
+        apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 fi
 
 command -v cargo >/dev/null || {

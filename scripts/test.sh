@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-bash scripts/install.sh python3 python3-venv
+bash scripts/install.sh python3 python3-venv chromium chromium-driver
 source scripts/environment.sh
 
 echo "test: formatting, lints, documentation"
@@ -16,8 +16,14 @@ bash scripts/run.sh
 
 echo "test: the fields, read back by VTK"
 [ -x .venv/bin/python ] || python3 -m venv .venv
-.venv/bin/python -c 'import vtk' 2>/dev/null || .venv/bin/pip install --quiet --requirement scripts/requirements.txt
+.venv/bin/python -c 'import selenium, vtk' 2>/dev/null || .venv/bin/pip install --quiet --requirement scripts/requirements.txt
 .venv/bin/python scripts/read_fields.py results
+
+echo "test: the report in a browser, of this run and of one that fails"
+.venv/bin/python scripts/check_report.py results
+"${CARGO_TARGET_DIR:-target}/release/ssnp155" -sheet_nx 40 -sheet_ny 2 -newton_max_iterations 3 -dt_min 0.1 \
+    -output_dir results/failed >/dev/null && exit 1
+.venv/bin/python scripts/check_report.py results/failed
 
 echo "test: cargo test"
 cargo test --workspace --release --locked

@@ -12,4 +12,5 @@ pub mod mesh;
 pub mod output;
 pub mod run;
 pub mod system;
+mod text;
 pub mod tool;

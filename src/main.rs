@@ -8,7 +8,10 @@ use mpi::collective::SystemOperation;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, CommunicatorCollectives};
 use petsc::{Session, options};
-use ssnp155::case::{Case, OptionSource, check_arguments, check_ranks, help_text};
+use ssnp155::case::{
+    Case, ENVIRONMENT, OptionSource, arguments_as_text, check_arguments, check_environment,
+    check_ranks, help_text,
+};
 use ssnp155::run::{Ending, conclude, simulate};
 
 /// Exit code of a run that did not finish, or whose verdicts do not hold.
@@ -24,9 +27,8 @@ fn main() -> ExitCode {
         return ExitCode::from(REFUSED);
     };
     let world = universe.world();
-    let args: Vec<String> = std::env::args().collect();
     // A panic on one rank would leave the others waiting for ever, so it ends them all.
-    match catch_unwind(AssertUnwindSafe(|| program(&world, &args))) {
+    match catch_unwind(AssertUnwindSafe(|| program(&world))) {
         Ok(Ok(Ending::Holds)) => ExitCode::SUCCESS,
         Ok(Ok(Ending::DoesNotHold)) => ExitCode::from(NOT_HELD),
         Ok(Ok(Ending::Interrupted)) => ExitCode::from(INTERRUPTED),
@@ -39,9 +41,11 @@ fn main() -> ExitCode {
 struct Refused;
 
 /// How the run ended. Collective.
-fn program(world: &SimpleCommunicator, args: &[String]) -> Result<Ending, Refused> {
-    agree(world, check_arguments(&args[1..]))?;
-    let session = agree(world, Session::with_help(args, &help_text()))?;
+fn program(world: &SimpleCommunicator) -> Result<Ending, Refused> {
+    let args = agree(world, arguments_as_text(std::env::args_os()))?;
+    agree(world, check_environment(std::env::var_os(ENVIRONMENT)))?;
+    agree(world, check_arguments(args.get(1..).unwrap_or_default()))?;
+    let session = agree(world, open_session(&args))?;
     let case = agree(world, Case::read(&PetscOptions))?;
     agree(
         world,
@@ -53,6 +57,15 @@ fn program(world: &SimpleCommunicator, args: &[String]) -> Result<Ending, Refuse
         // Help was asked for, and given.
         None => Ok(Ending::Holds),
     }
+}
+
+/// Starts PETSc, which reads the options.
+fn open_session(args: &[String]) -> Result<Session, String> {
+    Session::with_help(args, &help_text()).map_err(|error| {
+        format!(
+            "PETSc refuses its options ({error}); look at the command line, the option files, {ENVIRONMENT} and .petscrc"
+        )
+    })
 }
 
 /// The value if every rank has one; otherwise the lowest rank that failed says why. Collective.

@@ -27,7 +27,10 @@ fn a_run_that_cannot_go_on_says_where_and_why() {
             "#  where    after step ",
             "#  why      ",
             "-dt_min 0.1 ms",
-            "#  try  ",
+            "#  seen     ",
+            "#  tried    ",
+            "#  try      -newton_max_iterations 20 (now 2)",
+            "         refused: step to ",
         ] {
             assert!(text.contains(part), "{part} is missing in {text}");
         }
@@ -43,6 +46,12 @@ fn a_run_that_cannot_go_on_says_where_and_why() {
         assert_eq!(summary["status"], "not converged");
         assert_eq!(summary["counts"]["steps"], times.len());
         assert!(summary["reason"].as_str().unwrap().contains("refused"));
+        let diagnosis = &summary["diagnosis"];
+        for part in ["observed", "tried", "remedies"] {
+            assert!(!diagnosis[part].as_array().unwrap().is_empty(), "{part}");
+        }
+        let page = std::fs::read_to_string(folder.join("report.html")).unwrap();
+        assert!(page.contains(diagnosis["cause"].as_str().unwrap()));
         for name in ["fields.vtkhdf", "tools.vtkhdf", "contact.vtkhdf"] {
             let file = File::open(folder.join(name)).unwrap();
             let steps = file.group("VTKHDF/Steps").unwrap();
@@ -90,11 +99,86 @@ fn a_run_without_any_step_ends_too() {
     );
     assert!(ended.stdout.contains(" more ..."), "{}", ended.stdout);
     assert!(
-        ended.stdout.matches("tried").count() <= 4,
+        ended.stdout.matches("#  tried").count() <= 4,
         "{}",
         ended.stdout
     );
     // The header comes with the first row.
     assert!(history(&folder).is_empty());
     assert_eq!(summary(&folder)["counts"]["steps"], 0);
+}
+
+/// With friction that hardly gives points stick and slip in turn: the banner says which, and what to do, on any number of
+/// ranks. (60 x 2 elements, 11.7 mm deep.)
+#[test]
+fn points_that_stick_and_slip_are_named_with_their_place() {
+    let mut told = Vec::new();
+    for ranks in [1, 2] {
+        let folder = scratch(&format!("failure-slip-{ranks}"));
+        let mut words = vec!["-output_dir", folder.to_str().unwrap()];
+        words.extend("-sheet_nx 60 -sheet_ny 2 -output_every 0 -dt_min 0.1".split(' '));
+        words.extend("-friction_coefficient 0.1342 -friction_compliance 1e-9".split(' '));
+        let ended = run(ranks, 60, &words);
+        assert_eq!(ended.code, Some(1), "{}", ended.text());
+        let diagnosis = &summary(&folder)["diagnosis"];
+        let seen = diagnosis["observed"].to_string();
+        assert!(
+            seen.contains("contact points stick and slip") && seen.contains("under the punch at"),
+            "{seen}"
+        );
+        told.push((diagnosis["place"].clone(), diagnosis["remedies"].clone()));
+        let first = diagnosis["remedies"][0].as_str().unwrap();
+        assert!(
+            first.starts_with("-friction_compliance 5e-4 (now 1e-9)"),
+            "{first}"
+        );
+    }
+    println!("{told:?}");
+}
+
+/// An element that turns over is named, also if it belongs to another rank than the first.
+#[test]
+fn an_element_that_turns_over_is_named() {
+    for ranks in [1, 2] {
+        let folder = scratch(&format!("failure-element-{ranks}"));
+        let mut words = vec!["-output_dir", folder.to_str().unwrap()];
+        words.extend("-sheet_nx 40 -sheet_ny 2 -output_every 0".split(' '));
+        words.extend("-dt_initial 900 -dt_max 900 -dt_min 500".split(' '));
+        let ended = run(ranks, 60, &words);
+        assert_eq!(ended.code, Some(1), "{}", ended.text());
+        let seen = summary(&folder)["diagnosis"]["observed"][0].to_string();
+        assert!(
+            seen.contains("turned over") && seen.contains("along the sheet"),
+            "{seen}"
+        );
+    }
+}
+
+/// Where contact points are too far apart the punch goes through the sheet: no verdict says why, so the banner does.
+#[test]
+fn a_punch_that_passes_between_the_points_is_told() {
+    // One point on one edge is 30 mm from the middle, beside the punch.
+    for (elements, points, passes) in [("1", "1", true), ("1", "6", false), ("2", "6", false)] {
+        let folder = scratch(&format!("failure-passes-{elements}-{points}"));
+        let mut words = vec!["-output_dir", folder.to_str().unwrap()];
+        words.extend([
+            "-sheet_nx",
+            elements,
+            "-sheet_ny",
+            "1",
+            "-output_every",
+            "0",
+        ]);
+        words.extend(["-contact_points_per_edge", points]);
+        let ended = run(1, 60, &words);
+        assert_eq!(ended.code, Some(1), "{}", ended.text());
+        let notes = summary(&folder)["notes"].clone();
+        let note = notes[0].as_str().unwrap();
+        assert!(
+            note.contains("between its contact points") && note.contains("use -sheet_nx"),
+            "{note}"
+        );
+        assert_eq!(note.contains("passes through the sheet"), passes, "{note}");
+        assert!(ended.stdout.contains("=  note     "), "{}", ended.stdout);
+    }
 }

@@ -4,6 +4,7 @@
 use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
 
+use ssnp155::case::Case;
 use ssnp155::output::plot::{self, DeformedElement, Shape, View};
 use ssnp155::output::{FieldSample, SheetPart, StepRecord};
 
@@ -127,6 +128,7 @@ fn the_force_figure_shows_loading_unloading_and_the_reference() {
         file("force.svg"),
         "Punch force, 170 x 5 elements, without friction",
         &records,
+        &Case::reference().unwrap().reference_force().unwrap(),
     )
     .unwrap();
     let svg = std::fs::read_to_string(file("force.svg")).unwrap();

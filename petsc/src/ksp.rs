@@ -79,31 +79,6 @@ impl KspRef {
         check(unsafe { sys::PCSetType(self.pc()?, name.as_ptr()) })
     }
 
-    /// Sets the ordering of PETSc's own factorisations, for example `nd` or `rcm`; other
-    /// preconditioners ignore it.
-    ///
-    /// # Errors
-    /// If PETSc fails; an unknown ordering fails when it is used.
-    pub fn set_ordering(&mut self, name: &str) -> Result<()> {
-        let name = c_string(name)?;
-        // SAFETY: a live preconditioner and a C string, which PETSc copies.
-        check(unsafe { sys::PCFactorSetMatOrderingType(self.pc()?, name.as_ptr()) })
-    }
-
-    /// The solver for the whole matrix on each rank inside the preconditioner `redundant`.
-    ///
-    /// # Errors
-    /// If the preconditioner is another one.
-    pub fn redundant_mut(&mut self) -> Result<&mut KspRef> {
-        let mut raw = ptr::null_mut();
-        // SAFETY: a live preconditioner; PETSc refuses other types, and writes a solver that lives as
-        // long as the preconditioner, which is borrowed mutably through its owner.
-        unsafe {
-            check(sys::PCRedundantGetKSP(self.pc()?, &mut raw))?;
-            KspRef::from_raw_mut(raw)
-        }
-    }
-
     /// Prepares for solves with the present values of the matrix: a direct solver factorises, with
     /// the symbolic part of the last time if the pattern is the same. Collective.
     ///

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::material::hardening::HardeningError;
+use crate::text::show_real;
 
 /// Why a case is refused. The text is one sentence for the person who wrote the options.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -56,6 +57,23 @@ pub enum CaseError {
         /// The word.
         argument: String,
     },
+    /// A word of the command line that is not UTF-8 text.
+    #[error(
+        "argument '{argument}' is not UTF-8 text: write it in UTF-8, and give files and folders names in UTF-8"
+    )]
+    ArgumentNotText {
+        /// The word, as far as it can be read.
+        argument: String,
+    },
+    /// The environment variable with options is refused.
+    #[error("environment variable PETSC_OPTIONS: {0}")]
+    Environment(Box<CaseError>),
+    /// A quoted value without an end.
+    #[error("{problem}; a value with spaces stands between double quotes")]
+    OpenQuote {
+        /// What is wrong.
+        problem: String,
+    },
     /// `-options_file` without a path.
     #[error(
         "option -options_file has no value: give the path of an option file, for example inputs/ssnp155.opts"
@@ -63,7 +81,8 @@ pub enum CaseError {
     OptionsFileWithoutPath,
     /// `-options_file` with a path that cannot be read.
     #[error(
-        "option -options_file {path}: the file cannot be read ({reason}); give the path of a readable text file"
+        "option -options_file {path}: the file cannot be read ({reason}); give the path of a text file with an option on \
+         each line, for example inputs/ssnp155.opts"
     )]
     OptionsFileUnreadable {
         /// The path as given.
@@ -87,6 +106,18 @@ pub enum CaseError {
     /// The hardening table is refused; what it says names the file and the line.
     #[error("option -hardening_file: {0}")]
     Hardening(#[from] HardeningError),
+    /// The punch passes between two contact points. Lengths in mm.
+    #[error(
+        "the mesh cannot feel the punch: -punch_radius {} mm is smaller than the distance between contact points, \
+         {spacing:.3} mm; give a greater radius, or more elements with -sheet_nx",
+        show_real(*punch_radius)
+    )]
+    PunchUnseen {
+        /// Radius of the punch.
+        punch_radius: f64,
+        /// Distance between neighbouring contact points.
+        spacing: f64,
+    },
     /// The sheet does not fit between the vertical side of the punch and the die. Lengths in mm.
     #[error(
         "the sheet does not fit between punch and die: -die_radius {die_radius} mm less -punch_radius {punch_radius} mm \
@@ -170,6 +201,19 @@ pub enum CaseError {
         nx: usize,
         /// Elements through the thickness.
         ny: usize,
+    },
+    /// An option of PETSc that the program has to decide itself.
+    #[error(
+        "option -{option} {given}: the program chooses the steps itself, so only {allowed} works here; leave it out, and \
+         set the steps with -dt_initial, -dt_max, -dt_min or -fixed_steps_load"
+    )]
+    NotYours {
+        /// Name without the dash.
+        option: &'static str,
+        /// The value that was given.
+        given: String,
+        /// The one value that can be given.
+        allowed: &'static str,
     },
     /// The table of reference values is malformed.
     #[error("reference values, line {line}: {problem}")]

@@ -2,12 +2,33 @@
 
 use super::error::CaseError;
 use super::model::Case;
+use crate::contact::ContactLocation;
 
 /// Checks sheet, tools and stroke together.
 pub(crate) fn check(case: &Case) -> Result<(), CaseError> {
+    check_punch(case)?;
     check_clearance(case)?;
     check_depth(case)?;
     check_support(case)
+}
+
+/// A punch that is finer than the contact points goes through the sheet between them.
+fn check_punch(case: &Case) -> Result<(), CaseError> {
+    let edge = case.sheet.half_length() / case.discretisation.nx as f64;
+    let spacing = match case.discretisation.contact_location {
+        ContactLocation::Points => edge / case.discretisation.contact_points_per_edge as f64,
+        ContactLocation::Nodes => edge / 2.0,
+        ContactLocation::Closest => edge,
+    };
+    let punch_radius = case.tools.punch_radius;
+    if punch_radius >= spacing {
+        Ok(())
+    } else {
+        Err(CaseError::PunchUnseen {
+            punch_radius,
+            spacing,
+        })
+    }
 }
 
 /// The die's opening is narrowest where shoulder and cavity meet, at x = die radius; there the sheet must pass between

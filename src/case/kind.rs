@@ -2,6 +2,8 @@
 
 use std::ops::{Bound, RangeBounds};
 
+use crate::text::show_real;
+
 /// Why a text is not a value, in words that fit after "option -name text: ".
 pub(crate) type Problem = &'static str;
 
@@ -43,6 +45,8 @@ impl Kind for Real {
             let with_e = text.replace(['d', 'D'], "e");
             if with_e != text && with_e.parse::<f64>().is_ok() {
                 "the exponent is written with e, as in 1e-3"
+            } else if text.replace(',', ".").parse::<f64>().is_ok() {
+                "the decimal sign is a point, as in 28.5"
             } else {
                 "this is not a number"
             }
@@ -77,16 +81,6 @@ impl Kind for Real {
             Bound::Unbounded => String::new(),
         };
         format!("{lower}value{upper}")
-    }
-}
-
-/// Shortest text that reads back as the same number, with an exponent where that is shorter to read.
-pub(crate) fn show_real(value: f64) -> String {
-    let size = value.abs();
-    if size != 0.0 && !(1e-2..1e6).contains(&size) {
-        format!("{value:e}")
-    } else {
-        format!("{value}")
     }
 }
 

@@ -1,7 +1,8 @@
 //! Two kinds of values for stopping and resuming: a time on the clock, and a checkpoint.
 
-use super::kind::{Kind, Problem, show_real};
+use super::kind::{Kind, Problem};
 use super::model::Restart;
+use crate::text::show_real;
 
 /// A time on the clock in seconds, or none.
 pub(crate) struct WallTime;

@@ -12,12 +12,16 @@ mod kind;
 mod kind_resuming;
 mod model;
 mod option;
+mod option_file;
 mod provenance;
 mod reference;
+mod reference_force;
 mod table;
 mod unused;
 
-pub use arguments::{check_arguments, check_options_file};
+pub use arguments::{
+    ENVIRONMENT, arguments_as_text, check_arguments, check_environment, check_options_file,
+};
 pub use error::{CaseError, Warning};
 pub use geometry::check_ranks;
 pub use help::{help_text, options_markdown};
@@ -27,4 +31,5 @@ pub use model::{
 };
 pub use provenance::Difference;
 pub use reference::{Instant, ReferenceValue, Tolerance};
+pub use reference_force::ReferenceForce;
 pub use unused::check_unused;

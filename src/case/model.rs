@@ -205,6 +205,8 @@ pub struct Output {
     pub every: usize,
     /// Whether every Newton iteration is shown.
     pub iterations: bool,
+    /// Whether the model is only shown.
+    pub dry_run: bool,
 }
 
 /// Checkpoints, when to stop, and from where to go on.
@@ -285,6 +287,7 @@ impl Case {
                 dir: table::OUTPUT_DIR.read(options)?,
                 every: table::OUTPUT_EVERY.read(options)?,
                 iterations: table::MONITOR_ITERATIONS.read(options)?,
+                dry_run: table::DRY_RUN.read(options)?,
             },
             resuming: Resuming {
                 checkpoint_every: table::CHECKPOINT_EVERY.read(options)?,

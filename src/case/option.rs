@@ -3,6 +3,7 @@
 use super::error::CaseError;
 use super::kind::Kind;
 use super::model::{Case, OptionSource};
+use crate::text::shortened;
 
 /// The headings under which options are listed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,7 +87,7 @@ impl<K: Kind> Opt<K> {
             .parse(text)
             .map_err(|problem| CaseError::BadValue {
                 option: self.name,
-                given: text.to_owned(),
+                given: shortened(text),
                 problem,
                 wanted: self.wanted(),
                 default,

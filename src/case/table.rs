@@ -211,6 +211,12 @@ option_table! {
         meaning: "Shows every Newton iteration: residual norm, points in contact and how many of them changed.",
         value: |case| case.output.iterations,
     }
+    DRY_RUN: Flag {
+        name: "dry_run", unit: "", default: "false", group: Group::Output, kind: Flag,
+        meaning: "Shows the model (sizes, steps, unknowns, memory, shares of the ranks), draws it as model.svg, and solves \
+                  nothing.",
+        value: |case| case.output.dry_run,
+    }
     OUTPUT_DIR: Path {
         name: "output_dir", unit: "", default: "results", group: Group::Output, kind: Path,
         meaning: "Directory for everything the run writes; made if it is missing.",

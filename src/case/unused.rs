@@ -3,6 +3,7 @@
 use super::error::{CaseError, Warning};
 use super::option::Described;
 use super::table::TABLE;
+use crate::text::shortened;
 
 /// How PETSc's option names begin. Families end with an underscore, the rest are names (or beginnings of names) that stand
 /// alone; general words such as `use_` or `start_` are only listed with what follows in PETSc.
@@ -98,7 +99,7 @@ pub fn check_unused(unused: &[(String, Option<String>)]) -> (Vec<CaseError>, Vec
             });
         } else {
             errors.push(CaseError::UnknownOption {
-                given: given.to_owned(),
+                given: shortened(given),
                 nearest: nearest.in_words,
                 hint: if given.contains('=') {
                     "; name and value are separated by a space"

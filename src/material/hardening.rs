@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::hardening_table::{self, Row};
+use crate::text;
 
 /// The benchmark's traction curve (SSNP155 document, section 1.2).
 const BENCHMARK: &str = include_str!("../../inputs/reference/hardening.csv");
@@ -76,19 +77,12 @@ impl Hardening {
     /// Reads a table from a file; see [`Hardening::from_csv`].
     ///
     /// # Errors
-    /// The file is missing, a directory or not UTF-8 text, or the table cannot be used.
+    /// The file is missing, not a regular file, longer than 1 MiB or not UTF-8 text, or the table cannot be used.
     pub fn from_file(path: &Path, young: f64) -> Result<Self, HardeningError> {
         let origin = path.display().to_string();
-        match std::fs::read(path).map(String::from_utf8) {
-            Ok(Ok(text)) => Self::from_csv(&text, &origin, young),
-            Ok(Err(_)) => Err(HardeningError::Unreadable {
-                origin,
-                reason: "it is not UTF-8 text".to_owned(),
-            }),
-            Err(error) => Err(HardeningError::Unreadable {
-                origin,
-                reason: error.to_string(),
-            }),
+        match text::read(path) {
+            Ok(text) => Self::from_csv(&text, &origin, young),
+            Err(reason) => Err(HardeningError::Unreadable { origin, reason }),
         }
     }
 
@@ -160,6 +154,12 @@ impl Hardening {
         self.segments
             .partition_point(|segment| segment.start <= p)
             .saturating_sub(1)
+    }
+
+    /// Number of straight pieces, and the plastic strain at which the last of them begins.
+    pub fn pieces(&self) -> (usize, f64) {
+        let count = self.segments.len();
+        (count, self.segments[count - 1].start)
     }
 
     /// Initial yield stress, MPa.

@@ -1,5 +1,7 @@
 //! Reads the text of a hardening table and turns it into checked points of plastic strain and stress.
 
+use crate::text::{shortened, show_real};
+
 /// A point of the table and the line it stands on.
 pub(crate) struct Row {
     pub(crate) line: usize,
@@ -71,7 +73,10 @@ fn row(line: usize, content: &str) -> Result<Row, Refusal> {
 fn number(line: usize, column: &str, text: &str) -> Result<f64, Refusal> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => refuse(line, format!("the {column} '{text}' is not finite")),
+        Ok(_) => refuse(
+            line,
+            format!("the {column} '{}' is not finite", shortened(text)),
+        ),
         Err(_) => refuse(
             line,
             format!(
@@ -80,11 +85,6 @@ fn number(line: usize, column: &str, text: &str) -> Result<f64, Refusal> {
             ),
         ),
     }
-}
-
-/// The beginning of a text that may be anything.
-fn shortened(text: &str) -> String {
-    text.chars().take(40).collect()
 }
 
 /// Points (plastic strain, stress) with the first at exactly zero, strictly increasing strain and no softening.
@@ -120,7 +120,8 @@ pub(crate) fn plastic_points(rows: &[Row], young: f64) -> Result<Vec<(f64, f64)>
                 row.line,
                 format!(
                     "the stress {} MPa is below the one before ({} MPa); softening is not supported",
-                    row.stress, last.1
+                    show_real(row.stress),
+                    show_real(last.1)
                 ),
             );
         }
@@ -145,7 +146,8 @@ fn plastic_point(row: &Row, young: f64) -> Result<f64, Refusal> {
             row.line,
             format!(
                 "strain {} and stress {} MPa; 0 < strain <= {MOST_STRAIN} and 0 < stress <= {MOST_STRESS:e} MPa are needed",
-                row.strain, row.stress
+                show_real(row.strain),
+                show_real(row.stress)
             ),
         );
     }
@@ -163,9 +165,11 @@ fn first_point(row: &Row, plastic_strain: f64, young: f64) -> Result<f64, Refusa
     refuse(
         row.line,
         format!(
-            "the first point is not on the elastic line: strain {} - stress {} MPa / E {young} MPa leaves a plastic strain \
-             of {plastic_strain:.3e} instead of 0; change the point or -young_modulus",
-            row.strain, row.stress
+            "the first point is not on the elastic line: strain {} - stress {} MPa / E {} MPa leaves a plastic strain of \
+             {plastic_strain:.3e} instead of 0; change the point or -young_modulus",
+            show_real(row.strain),
+            show_real(row.stress),
+            show_real(young),
         ),
     )
 }

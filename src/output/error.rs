@@ -29,6 +29,14 @@ pub enum OutputError {
         /// The system's words.
         reason: String,
     },
+    /// Something in the output folder has the name of a file of the run and cannot be written over.
+    #[error("{} cannot be written over: {reason}; move it away, or give another folder with -output_dir", path.display())]
+    NotReplaceable {
+        /// The file.
+        path: PathBuf,
+        /// What is in the way.
+        reason: String,
+    },
     /// A file could not be written.
     #[error("cannot write {}: {reason}", path.display())]
     Write {

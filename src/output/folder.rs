@@ -30,7 +30,8 @@ impl OutputDir {
     /// does the work, all ranks return the same result.
     ///
     /// # Errors
-    /// [`OutputError::NotAFolder`], [`OutputError::CannotCreateFolder`] or [`OutputError::NotWritable`].
+    /// [`OutputError::NotAFolder`], [`OutputError::CannotCreateFolder`], [`OutputError::NotReplaceable`] or
+    /// [`OutputError::NotWritable`].
     pub fn create(path: impl AsRef<Path>, comm: &impl Communicator) -> Result<Self, OutputError> {
         let path = path.as_ref();
         let mine = if comm.rank() == 0 {
@@ -93,6 +94,11 @@ impl OutputDir {
         self.file(SUMMARY)
     }
 
+    /// `report.html`, see [`super::Report`].
+    pub fn report(&self) -> PathBuf {
+        self.file("report.html")
+    }
+
     /// `force.svg`, see [`super::plot::force`].
     pub fn force_figure(&self) -> PathBuf {
         self.file("force.svg")
@@ -104,6 +110,16 @@ impl OutputDir {
     }
 }
 
+/// What a run writes; names with a number in them are left out.
+const FILES: [&str; 6] = [
+    "history.csv",
+    "fields.vtkhdf",
+    "tools.vtkhdf",
+    "contact.vtkhdf",
+    "summary.json",
+    "force.svg",
+];
+
 /// The check itself, without MPI.
 fn prepare(path: &Path) -> Result<(), OutputError> {
     match fs::metadata(path) {
@@ -113,6 +129,19 @@ fn prepare(path: &Path) -> Result<(), OutputError> {
             path: path.into(),
             reason: error.to_string(),
         })?,
+    }
+    for name in FILES {
+        let file = path.join(name);
+        let free = match fs::metadata(&file) {
+            Err(_) => Ok(()),
+            Ok(found) if !found.is_file() => Err("it is not a file".to_owned()),
+            Ok(_) => fs::OpenOptions::new()
+                .append(true)
+                .open(&file)
+                .map(|_| ())
+                .map_err(|error| error.to_string()),
+        };
+        free.map_err(|reason| OutputError::NotReplaceable { path: file, reason })?;
     }
     // Permission bits do not tell the truth on every file system: trying does.
     let probe = path.join(format!(".probe-{}", std::process::id()));

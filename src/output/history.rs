@@ -120,7 +120,8 @@ mod tests {
             "t_ms,stroke_mm,force_N,dy_A_punch_mm,dy_A_sheet_mm,gap_A_mm,angle_deg,dt_ms,newton_iterations,\
              active_points,max_penetration_mm,min_contact_force_N,kinetic_energy_mJ,strain_energy_mJ,\
              plastic_dissipation_mJ,contact_energy_mJ,external_work_mJ,energy_error,die_force_N,inertia_N,\
-             balance_error,cone_violation,angle_fit_residual_mm,residual_norm_mm,refused_solves"
+             balance_error,cone_violation,angle_fit_residual_mm,residual_norm_mm,refused_solves,\
+             max_complementarity_mJ"
         );
         fs::remove_file(path).unwrap();
     }

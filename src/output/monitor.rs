@@ -1,29 +1,36 @@
 //! What the terminal shows while a run goes on: a header, one line per accepted step, a banner at the end.
 
+use std::collections::VecDeque;
 use std::io::Write;
+use std::time::{Duration, Instant};
 
 use super::StepRecord;
+use crate::tool::PunchMotion;
 
 /// Width of the banners, characters.
 const WIDTH: usize = 80;
+/// Steps whose speed tells how long the rest will take.
+const RECENT: usize = 20;
 
 /// The header above the step lines, without a line break.
 pub fn header() -> String {
     format!(
-        "{:>7}  {:>9}  {:>9}  {:>9}  {:>8}  {:>6}  {:>6}  {:>9}",
-        "done", "t ms", "stroke mm", "force N", "dt ms", "Newton", "active", "gap A mm"
+        "{:>7} {:>7}  {:>9}  {:>9}  {:>9}  {:>8}  {:>6}  {:>6}  {:>9}",
+        "done", "left", "t ms", "stroke mm", "force N", "dt ms", "Newton", "active", "gap A mm"
     )
 }
 
-/// The line of one accepted step of a run that ends at `end_ms`, without a line break.
-pub fn step_line(record: &StepRecord, end_ms: f64) -> String {
-    let share = 100.0 * record.t_ms / end_ms;
+/// The line of one accepted step, without a line break: `done` is the share of the punch's way, `left` the time the rest
+/// will take if that is known.
+pub fn step_line(record: &StepRecord, done: f64, left: Option<Duration>) -> String {
+    let share = 100.0 * done;
+    let left = left.map_or_else(String::new, clock);
     let refused = match record.refused_solves {
         0 => String::new(),
         count => format!("  {count} refused"),
     };
     format!(
-        "{share:>5.1} %  {:>9.3}  {:>9.4}  {:>9.3}  {:>8.4}  {:>6}  {:>6}  {:>9.5}{refused}",
+        "{share:>5.1} % {left:>7}  {:>9.3}  {:>9.4}  {:>9.3}  {:>8.4}  {:>6}  {:>6}  {:>9.5}{refused}",
         record.t_ms,
         record.stroke_mm,
         record.force_N,
@@ -32,6 +39,51 @@ pub fn step_line(record: &StepRecord, end_ms: f64) -> String {
         record.active_points,
         record.gap_A_mm,
     )
+}
+
+/// A time as h:mm:ss or m:ss.
+fn clock(time: Duration) -> String {
+    let seconds = time.as_secs();
+    let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
+    if hours > 0 {
+        format!("{hours}:{minutes:02}:{seconds:02}")
+    } else {
+        format!("{minutes}:{seconds:02}")
+    }
+}
+
+/// How much of the punch's way is done, and how long the rest will take at the speed of the last steps. Steps shorten
+/// where the solution is hard, so it is an estimate and no promise.
+struct Progress {
+    motion: PunchMotion,
+    /// When the last steps ended, and how far the punch had gone, mm.
+    recent: VecDeque<(Instant, f64)>,
+}
+
+impl Progress {
+    fn whole(&self) -> f64 {
+        self.motion.way(self.motion.end())
+    }
+
+    /// Takes a step that ended at `t` (ms), now.
+    fn take(&mut self, t: f64, now: Instant) {
+        if self.recent.len() > RECENT {
+            self.recent.pop_front();
+        }
+        self.recent.push_back((now, self.motion.way(t)));
+    }
+
+    fn done(&self) -> f64 {
+        self.recent
+            .back()
+            .map_or(0.0, |(_, way)| way / self.whole())
+    }
+
+    fn left(&self) -> Option<Duration> {
+        let ((start, from), (end, to)) = (self.recent.front()?, self.recent.back()?);
+        let speed = (to - from) / end.duration_since(*start).as_secs_f64();
+        Duration::try_from_secs_f64((self.whole() - to) / speed).ok()
+    }
 }
 
 /// The banner of a run that computed everything asked for. `facts` are shown as aligned pairs. Ends with a line break.
@@ -113,26 +165,31 @@ fn wrap(text: &str, width: usize) -> Vec<String> {
 /// A terminal that went away must not end a run, so failures to write are ignored; everything shown is in the files.
 pub struct Monitor<W: Write> {
     out: Option<W>,
-    end_ms: f64,
+    progress: Progress,
 }
 
 impl<W: Write> Monitor<W> {
-    /// A monitor of rank `rank` for a run that ends at `end_ms` (ms). `out` may be a `&mut dyn Write`.
-    pub fn new(rank: i32, out: W, end_ms: f64) -> Self {
+    /// A monitor of rank `rank` for a run along `motion`. `out` may be a `&mut dyn Write`.
+    pub fn new(rank: i32, out: W, motion: PunchMotion) -> Self {
         Self {
             out: (rank == 0).then_some(out),
-            end_ms,
+            progress: Progress {
+                motion,
+                recent: VecDeque::new(),
+            },
         }
     }
 
-    /// Shows [`header`].
-    pub fn header(&mut self) {
+    /// Shows [`header`]; from now on the clock runs for a run that is at time `t` (ms).
+    pub fn header(&mut self, t: f64) {
+        self.progress.take(t, Instant::now());
         self.show(&(header() + "\n"));
     }
 
     /// Shows [`step_line`].
     pub fn step(&mut self, record: &StepRecord) {
-        let line = step_line(record, self.end_ms);
+        self.progress.take(record.t_ms, Instant::now());
+        let line = step_line(record, self.progress.done(), self.progress.left());
         self.show(&(line + "\n"));
     }
 
@@ -164,23 +221,48 @@ mod tests {
 
     #[test]
     fn step_lines_stand_under_their_header() {
-        let line = step_line(&record(), 900.0);
+        let line = step_line(&record(), 0.5, Some(Duration::from_secs(83)));
         assert_eq!(
             header(),
-            "   done       t ms  stroke mm    force N     dt ms  Newton  active   gap A mm"
+            "   done    left       t ms  stroke mm    force N     dt ms  Newton  active   gap A mm"
         );
         assert_eq!(
             line,
-            " 50.0 %    450.000    14.2500    168.123    2.5000       5      42    0.00125  2 refused"
+            " 50.0 %    1:23    450.000    14.2500    168.123    2.5000       5      42    0.00125  2 refused"
         );
+    }
+
+    const MOTION: PunchMotion = PunchMotion {
+        stroke: 28.5,
+        unload_fraction: 0.1,
+        time_load: 900.0,
+        time_unload: 100.0,
+    };
+
+    #[test]
+    fn the_time_left_follows_the_way_and_not_the_time_of_the_motion() {
+        let start = Instant::now();
+        let mut progress = Progress {
+            motion: MOTION,
+            recent: VecDeque::new(),
+        };
+        assert_eq!(progress.left(), None);
+        progress.take(0.0, start);
+        // Half of the way down in 10 s: 14.25 of 31.35 mm.
+        progress.take(450.0, start + Duration::from_secs(10));
+        assert!((progress.done() - 14.25 / 31.35).abs() < 1e-12);
+        assert_eq!(clock(progress.left().unwrap()), "0:12");
+        progress.take(1000.0, start + Duration::from_secs(20));
+        assert_eq!(progress.left(), Some(Duration::ZERO));
+        assert_eq!(clock(Duration::from_secs(3723)), "1:02:03");
     }
 
     #[test]
     fn only_rank_0_shows_anything() {
         let (mut first, mut second) = (Vec::new(), Vec::new());
         for (rank, out) in [(0, &mut first), (1, &mut second)] {
-            let mut monitor = Monitor::new(rank, out as &mut dyn Write, 900.0);
-            monitor.header();
+            let mut monitor = Monitor::new(rank, out as &mut dyn Write, MOTION);
+            monitor.header(0.0);
             monitor.step(&record());
         }
         assert_eq!(first.iter().filter(|&&byte| byte == b'\n').count(), 2);

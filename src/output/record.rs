@@ -61,4 +61,6 @@ pub struct StepRecord {
     pub residual_norm_mm: f64,
     /// Attempts of this step that were refused and redone with a shorter one.
     pub refused_solves: u32,
+    /// Largest product of contact force and open gap of a contact point, mJ: nothing may push across a gap.
+    pub max_complementarity_mJ: f64,
 }

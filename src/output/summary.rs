@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::{OutputError, StepRecord, VerdictTable, atomic};
+use super::{Diagnosis, OutputError, StepRecord, VerdictTable, atomic};
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -53,7 +53,7 @@ pub struct WorstValue {
 /// One certificate: its column in the history, and how bad a record is (larger is worse).
 type Certificate = (&'static str, fn(&StepRecord) -> f64, fn(f64) -> f64);
 
-const CERTIFICATES: [Certificate; 6] = [
+const CERTIFICATES: [Certificate; 7] = [
     (
         "max_penetration_mm",
         |record| record.max_penetration_mm,
@@ -63,6 +63,11 @@ const CERTIFICATES: [Certificate; 6] = [
         "min_contact_force_N",
         |record| record.min_contact_force_N,
         |value| -value,
+    ),
+    (
+        "max_complementarity_mJ",
+        |record| record.max_complementarity_mJ,
+        f64::abs,
     ),
     ("energy_error", |record| record.energy_error, f64::abs),
     ("balance_error", |record| record.balance_error, f64::abs),
@@ -125,6 +130,8 @@ pub struct Provenance {
     pub mpi_ranks: u32,
     /// Compiler, profile and the like; nothing that names the machine.
     pub build: BTreeMap<String, String>,
+    /// SHA-256 of what the run was made from, by name.
+    pub inputs: BTreeMap<String, String>,
     /// Every option that has a value, default or not.
     pub options: BTreeMap<String, String>,
 }
@@ -145,6 +152,10 @@ pub struct Summary {
     pub status: Status,
     /// Where and why, if it did not finish.
     pub reason: Option<String>,
+    /// The same in detail, and what can be done.
+    pub diagnosis: Option<Diagnosis>,
+    /// What the run says about itself that no verdict says.
+    pub notes: Vec<String>,
     /// The last accepted step, if there was one.
     #[serde(rename = "final")]
     pub last: Option<StepRecord>,
@@ -244,6 +255,8 @@ mod tests {
         let summary = Summary {
             status: Status::NotConverged,
             reason: Some("step 12 at t = 40 ms".into()),
+            diagnosis: None,
+            notes: Vec::new(),
             last: Some(StepRecord {
                 gap_A_mm: f64::NAN,
                 force_N: 151.5,
@@ -266,6 +279,7 @@ mod tests {
                 petsc_version: "3.18.5".into(),
                 mpi_ranks: 2,
                 build: BTreeMap::new(),
+                inputs: BTreeMap::new(),
                 options: BTreeMap::from([("friction".into(), "0.1342".into())]),
             },
             timing: Timing {

@@ -6,13 +6,14 @@ use mpi::traits::Communicator;
 use petsc::Session;
 
 use super::blas::Blas;
-use super::judgement::{BALANCE_LIMIT, PULL_LIMIT, judge};
-use super::{Failure, Interruption, Outcome, Refusal, RunError, unread};
+use super::diagnosis::{diagnose, notes};
+use super::judgement::{BALANCE_LIMIT, CONE_LIMIT, PULL_LIMIT, judge};
+use super::{Interruption, Outcome, RunError, inputs, unread};
 use crate::case::Case;
 use crate::output::monitor::{failed_banner, finished_banner, interrupted_banner};
 use crate::output::number;
 use crate::output::summary::{Certificates, Counts, Provenance, Status, Summary, Timing};
-use crate::output::{StepRecord, VerdictTable};
+use crate::output::{Diagnosis, Report, StepRecord, VerdictTable};
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,10 +38,11 @@ pub fn conclude(
 ) -> Result<Ending, RunError> {
     let to_the_end = outcome.failure.is_none() && outcome.interruption.is_none();
     let verdicts = judge(case, outcome.recorder.records(), to_the_end)?;
+    let reference = case.reference_force()?;
+    let summary = summarise(case, &outcome, session, comm, verdicts.clone());
     if comm.rank() == 0 {
-        let summary = summarise(case, &outcome, session, comm, verdicts.clone());
         summary.write(outcome.recorder.folder().summary())?;
-        outcome.recorder.force_figure()?;
+        outcome.recorder.force_figure(&reference)?;
     }
     let mut text = if verdicts.rows.is_empty() {
         "\n".to_owned()
@@ -48,9 +50,15 @@ pub fn conclude(
         format!("\n{}\n", verdicts.text())
     };
     text.push_str(&unread::warnings()?);
-    let (banner, ending) = match (&outcome.failure, &outcome.interruption) {
-        (Some(failure), _) => (failed(case, failure, &outcome), Ending::DoesNotHold),
-        (None, Some(stop)) => (interrupted(case, stop, &outcome), Ending::Interrupted),
+    let (banner, ending) = match (&summary.diagnosis, &outcome.interruption) {
+        (Some(diagnosis), _) => (
+            failed(case, diagnosis, &outcome, &summary.notes),
+            Ending::DoesNotHold,
+        ),
+        (None, Some(stop)) => (
+            interrupted(case, stop, &outcome, &summary.notes),
+            Ending::Interrupted,
+        ),
         (None, None) => {
             let holds = verdicts.failures() == 0;
             let ending = if holds {
@@ -58,11 +66,22 @@ pub fn conclude(
             } else {
                 Ending::DoesNotHold
             };
-            (finished(case, &outcome, &verdicts), ending)
+            (finished(case, &outcome, &verdicts, &summary.notes), ending)
         }
     };
     text.push_str(&banner);
     outcome.recorder.show(&text);
+    // The page is made from the files of the run, which all ranks must have closed.
+    let (folder, records) = outcome.recorder.close();
+    if comm.rank() == 0 {
+        let report = Report {
+            case,
+            summary: &summary,
+            records: &records,
+            reference: &reference,
+        };
+        report.write(&folder)?;
+    }
     Ok(ending)
 }
 
@@ -92,6 +111,11 @@ fn summarise(
     Summary {
         status,
         reason,
+        diagnosis: outcome
+            .failure
+            .as_ref()
+            .map(|failure| diagnose(case, failure, outcome.counts.steps)),
+        notes: notes(case, records),
         last: records.last().copied(),
         angles_deg: by_name(|angle| angle.degrees),
         angle_fit_residuals_mm: by_name(|angle| angle.fit_residual),
@@ -109,6 +133,7 @@ fn summarise(
             ),
             (text("pull"), PULL_LIMIT),
             (text("balance"), BALANCE_LIMIT),
+            (text("cone"), CONE_LIMIT),
         ]),
         worst: certificates.worst(),
         verdicts,
@@ -129,6 +154,7 @@ fn summarise(
                     Blas::loaded().map_or_else(|| text("not known"), |blas| blas.to_string()),
                 ),
             ]),
+            inputs: inputs::checksums(case),
             options: case
                 .options()
                 .into_iter()
@@ -222,16 +248,18 @@ fn effort(case: &Case, outcome: &Outcome) -> Vec<(&'static str, String)> {
     facts
 }
 
-fn finished(case: &Case, outcome: &Outcome, verdicts: &VerdictTable) -> String {
+fn finished(case: &Case, outcome: &Outcome, verdicts: &VerdictTable, notes: &[String]) -> String {
     let title = match verdicts.failures() {
         0 => "every verdict holds".to_owned(),
         1 => "but 1 verdict does not hold".to_owned(),
         count => format!("but {count} verdicts do not hold"),
     };
-    finished_banner(&title, &effort(case, outcome))
+    let mut facts = named("note", notes);
+    facts.extend(effort(case, outcome));
+    finished_banner(&title, &facts)
 }
 
-fn interrupted(case: &Case, stop: &Interruption, outcome: &Outcome) -> String {
+fn interrupted(case: &Case, stop: &Interruption, outcome: &Outcome, notes: &[String]) -> String {
     let place = format!(
         "after step {}, t = {:.4} ms, punch down by {:.4} mm",
         outcome.counts.steps,
@@ -242,48 +270,33 @@ fn interrupted(case: &Case, stop: &Interruption, outcome: &Outcome) -> String {
         "the same options with -restart, from {}",
         stop.checkpoint.display()
     );
-    interrupted_banner(
-        &place,
-        &stop.cause.sentence(),
-        &resume,
-        &effort(case, outcome),
-    )
+    let mut facts = named("note", notes);
+    facts.extend(effort(case, outcome));
+    interrupted_banner(&place, &stop.cause.sentence(), &resume, &facts)
 }
 
-/// The refused solves, the first and the last ones if there are many.
-fn tried(refusals: &[Refusal]) -> Vec<(&'static str, String)> {
-    const FIRST: usize = 1;
-    const LAST: usize = 3;
-    let show = |refusal: &Refusal| ("tried", refusal.to_string());
-    let hidden = refusals.len().saturating_sub(FIRST + LAST);
-    if hidden < 2 {
-        return refusals.iter().map(show).collect();
-    }
-    let mut facts: Vec<_> = refusals[..FIRST].iter().map(show).collect();
-    facts.push(("", format!("... {hidden} more ...")));
-    facts.extend(refusals[FIRST + hidden..].iter().map(show));
-    facts
-}
-
-fn failed(case: &Case, failure: &Failure, outcome: &Outcome) -> String {
-    let place = format!(
-        "after step {}, t = {:.4} ms, punch down by {:.4} mm",
-        outcome.counts.steps, failure.time, failure.depth
-    );
-    let mut facts = tried(&failure.refusals);
-    facts.push((
-        "try",
-        "a smaller -dt_max, more -contact_points_per_edge, a larger \
-                        -contact_compliance or a finer mesh"
-            .to_owned(),
-    ));
-    if let Some(path) = &failure.checkpoint {
-        let advice = format!(
-            "with other options for steps and solver, -restart {}",
-            path.display()
-        );
+fn failed(case: &Case, diagnosis: &Diagnosis, outcome: &Outcome, notes: &[String]) -> String {
+    let mut facts = named("seen", &diagnosis.observed);
+    facts.extend(named("tried", &diagnosis.tried));
+    facts.extend(named("try", &diagnosis.remedies));
+    if let Some(path) = outcome.failure.as_ref().and_then(|f| f.checkpoint.as_ref()) {
+        let advice = format!("with what is to be tried, -restart {}", path.display());
         facts.push(("resume", advice));
     }
+    facts.push((
+        "read",
+        "docs/it-does-not-converge.md, and report.html beside the results".to_owned(),
+    ));
+    facts.extend(named("note", notes));
     facts.extend(effort(case, outcome));
-    failed_banner(&place, &failure.reason, &facts)
+    failed_banner(&diagnosis.place, &diagnosis.cause, &facts)
+}
+
+/// The same name before each line; none before one that tells of others left out.
+fn named(name: &'static str, lines: &[String]) -> Vec<(&'static str, String)> {
+    let shown = |line: &String| if line.starts_with("...") { "" } else { name };
+    lines
+        .iter()
+        .map(|line| (shown(line), line.clone()))
+        .collect()
 }

@@ -29,8 +29,12 @@ const DEFAULTS: &[(&str, &str)] = &[
     ("ts_exact_final_time", "stepover"),
 ];
 
-/// Lets PETSc's time stepper and the solvers below it print their help. Collective.
-pub(super) fn show_help(case: &Case, comm: &SimpleCommunicator) -> Result<(), RunError> {
+/// Lets PETSc's time stepper and the solvers below it read their options: with -help they print what there is, and a
+/// value they do not know is refused. Collective.
+///
+/// # Errors
+/// PETSc's words about the value.
+pub(super) fn read_options(case: &Case, comm: &SimpleCommunicator) -> Result<(), RunError> {
     set(case)?;
     Ok(Ts::new(&comm.duplicate())?.set_from_options()?)
 }

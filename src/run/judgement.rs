@@ -8,7 +8,7 @@ use crate::output::{StepRecord, Tolerance, VerdictRow, VerdictTable};
 /// Largest share by which punch force may differ from die force and inertia.
 pub(super) const BALANCE_LIMIT: f64 = 1e-6;
 /// Largest excess of friction as a share of the largest friction possible.
-const CONE_LIMIT: f64 = 1e-6;
+pub(super) const CONE_LIMIT: f64 = 1e-6;
 /// Largest pull of a contact point as a share of the punch force: what the residual's tolerance leaves.
 pub(super) const PULL_LIMIT: f64 = 1e-6;
 

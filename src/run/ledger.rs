@@ -95,6 +95,7 @@ impl Ledger {
             angle_fit_residual_mm: measures.angle_fit_residual,
             residual_norm_mm: effort.residual_norm,
             refused_solves: effort.refused_solves,
+            max_complementarity_mJ: measures.max_complementarity,
         }
     }
 }

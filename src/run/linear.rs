@@ -31,6 +31,15 @@ const PACKAGE_DEFAULTS: &[(&str, &str)] = &[
     ("condensed_mat_mumps_icntl_6", "0"),
 ];
 
+/// Whether the option has the value that this program gave it for the linear solves.
+pub(super) fn is_default(name: &str, value: Option<&str>) -> bool {
+    PETSC_DEFAULTS
+        .iter()
+        .chain(&[(PACKAGE, DEFAULT_PACKAGE)])
+        .chain(PACKAGE_DEFAULTS)
+        .any(|(ours, default)| *ours == name && value == Some(*default))
+}
+
 /// Options that need the entries of the Jacobian even if our solve is used.
 const NEED_ENTRIES: &[&str] = &[
     "ksp_type",

@@ -6,6 +6,9 @@ mod blas;
 mod checkpoint;
 mod conclusion;
 mod defaults;
+mod diagnosis;
+mod dry_run;
+mod inputs;
 mod judgement;
 mod ledger;
 mod linear;
@@ -13,12 +16,13 @@ mod newton;
 mod recorder;
 mod refusal;
 mod simulation;
+mod solve_watch;
 mod spent;
 mod springback;
 mod static_path;
 mod step_size;
+mod stop_watch;
 mod unread;
-mod watch;
 
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -35,17 +39,18 @@ pub use newton::Damping;
 pub use recorder::Recorder;
 pub use refusal::Refusal;
 pub use simulation::{Counts, Interruption};
+pub use solve_watch::{Course, Flip};
 pub use springback::{Springback, springback};
 pub use static_path::StaticPath;
 pub use step_size::StepControl;
-pub use watch::StopCause;
+pub use stop_watch::StopCause;
 
 use crate::case::{self, Case, CaseError};
 use crate::output::{OutputError, number};
 use crate::system::{Problem, System, SystemError};
 use simulation::Simulation;
 use spent::Spent;
-use watch::Watch;
+use stop_watch::StopWatch;
 
 /// A run that could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -60,7 +65,7 @@ pub enum RunError {
     #[error(transparent)]
     Output(#[from] OutputError),
     /// PETSc.
-    #[error(transparent)]
+    #[error("{0}; if a value of one of PETSc's options is to blame: -help lists what each can be")]
     Petsc(#[from] petsc::Error),
     /// There is nothing to go on from.
     #[error(transparent)]
@@ -128,10 +133,14 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     let clock = Instant::now();
     // Before any file is made: neither a slip of the pen nor a question may cost an earlier run's results.
     if petsc::options::has("help")? {
-        return defaults::show_help(case, comm).map(|()| None);
+        return defaults::read_options(case, comm).map(|()| None);
     }
     unread::refuse_slips()?;
-    let watch = Watch::new(&case.resuming, clock)?;
+    defaults::read_options(case, comm)?;
+    if case.output.dry_run {
+        return dry_run::describe(case, comm).map(|()| None);
+    }
+    let stop_watch = StopWatch::new(&case.resuming, clock)?;
     let resumed = checkpoint::open(case, comm)?;
     let spent = Spent::new(clock, resumed.as_ref().map_or([0.0; 2], Resumed::spent));
     let problem = Problem::new(case);
@@ -145,10 +154,12 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     let mut recorder = Recorder::new(case, &system, resumed.as_ref())?;
     recorder.show(&blas::report(comm));
     let simulation = Rc::new(Simulation::new(
-        case, system, recorder, landmarks, watch, spent,
+        case, system, recorder, landmarks, stop_watch, spent,
     )?);
     let finish = simulation.run(case, resumed.as_ref())?;
-    let failure = finish.reason.is_diverged().then(|| Failure {
+    // A limit of the user's (-ts_max_steps) is a good end for PETSc, but not for the motion.
+    let short = finish.interruption.is_none() && finish.time < motion.end() * (1.0 - 1e-9);
+    let failure = (short || finish.reason.is_diverged()).then(|| Failure {
         time: finish.time,
         depth: motion.depth(finish.time),
         reason: why(case, finish.reason, &finish.refusals),

@@ -41,11 +41,6 @@ impl Damping {
         self.last_was_full = length == 1.0;
         length
     }
-
-    /// Residual norms of the current solve, mm.
-    pub fn norms(&self) -> &[f64] {
-        &self.norms
-    }
 }
 
 /// A correction may move the sheet by this share of what the step in time is expected to.

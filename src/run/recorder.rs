@@ -7,14 +7,14 @@ use std::sync::Arc;
 use mpi::traits::Communicator;
 
 use super::checkpoint::{Resumed, RunState, STATE};
-use crate::case::Case;
+use crate::case::{Case, ReferenceForce};
 use crate::output::folder::{CONTACT, FIELDS, HISTORY, TOOLS};
 use crate::output::plot::{self, DeformedElement, Shape, View, gather_elements};
 use crate::output::{
     Arrays, ContactFile, ContactSample, FieldSample, History, Monitor, OutputDir, OutputError,
     SheetFile, SheetPart, StepRecord, ToolsFile, agree, checkpoint, history,
 };
-use crate::system::{NodeSample, System, Tool};
+use crate::system::{NodeSample, Problem, System, Tool};
 use crate::tool::PunchMotion;
 
 /// Spacing of the points of the drawn tools, mm.
@@ -78,7 +78,7 @@ impl Recorder {
             rank: comm.rank(),
         };
         let mut this = Self {
-            monitor: Monitor::new(comm.rank(), stdout(), case.loading.motion().end()),
+            monitor: Monitor::new(comm.rank(), stdout(), case.loading.motion()),
             history,
             sheet: SheetFile::create(folder.fields(), comm, &part)?,
             part,
@@ -144,6 +144,11 @@ impl Recorder {
         &self.records
     }
 
+    /// Closes the files; what is left is where they are, and the rows. Collective.
+    pub fn close(self) -> (OutputDir, Vec<StepRecord>) {
+        (self.folder, self.records)
+    }
+
     /// Shows from where the run goes on, if it does, and the header of the step lines.
     pub fn begin(&mut self, resumed: Option<&Resumed>) {
         if let Some(earlier) = resumed {
@@ -153,7 +158,7 @@ impl Recorder {
                 self.show(&format!("note: {note}\n"));
             }
         }
-        self.monitor.header();
+        self.monitor.header(resumed.map_or(0.0, Resumed::time));
     }
 
     /// Shows a text to the user, once over all ranks.
@@ -198,17 +203,7 @@ impl Recorder {
         let local = system.local();
         let problem = local.problem();
         let depth = self.motion.depth(t);
-        let right_half = |tool: &Option<Arc<Tool>>| -> Vec<[f64; 2]> {
-            let points = outline(tool.as_deref(), FINE_TOOL_SPACING);
-            points
-                .into_iter()
-                .filter(|point| point[0] > -1e-9)
-                .collect()
-        };
-        let die = right_half(&problem.lower_tool);
-        let mut punch = right_half(&problem.upper_tool);
-        // The punch is walked from its side to its tip; the figure wants it the other way.
-        punch.reverse();
+        let (die, punch) = right_halves(problem);
         let figure = Shape {
             title: &format!("{label}: punch down by {depth:.2} mm"),
             elements: &elements,
@@ -222,11 +217,11 @@ impl Recorder {
         plot::shape(self.folder.file(&name), &figure)
     }
 
-    /// Draws force against stroke, on rank 0.
+    /// Draws force against stroke beside the reference, on rank 0.
     ///
     /// # Errors
     /// If the figure cannot be written.
-    pub fn force_figure(&self) -> Result<(), OutputError> {
+    pub fn force_figure(&self, reference: &ReferenceForce) -> Result<(), OutputError> {
         if self.history.is_none() || self.records.is_empty() {
             return Ok(());
         }
@@ -234,6 +229,7 @@ impl Recorder {
             self.folder.force_figure(),
             "Force of the punch, whole sheet",
             &self.records,
+            reference,
         )
     }
 
@@ -281,6 +277,21 @@ fn field_sample(node: &NodeSample) -> FieldSample {
         gap: node.gap,
         contact_status: i32::from(node.contact_pressure > 0.0),
     }
+}
+
+/// The right halves of die and punch in their first positions, from the axis outwards, mm.
+pub(super) fn right_halves(problem: &Problem) -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
+    let right_half = |tool: &Option<Arc<Tool>>| -> Vec<[f64; 2]> {
+        let points = outline(tool.as_deref(), FINE_TOOL_SPACING);
+        points
+            .into_iter()
+            .filter(|point| point[0] > -1e-9)
+            .collect()
+    };
+    let mut punch = right_half(&problem.upper_tool);
+    // The punch is walked from its side to its tip.
+    punch.reverse();
+    (right_half(&problem.lower_tool), punch)
 }
 
 /// Outline of a tool in its first position, with `spacing` (mm) between points.

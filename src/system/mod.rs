@@ -2,6 +2,7 @@
 //! and what can be measured on a state; keeps the committed history of the material points.
 //! Never: decides on steps, prints, or writes files.
 
+mod census;
 mod condensed;
 mod distributed;
 mod elimination;
@@ -14,8 +15,10 @@ mod problem;
 mod release;
 mod sample;
 mod seed;
+mod share;
 mod snapshot;
 
+pub use census::Share;
 pub use condensed::CondensedSolve;
 pub use distributed::{System, SystemError};
 pub use evaluate::ElementFailure;
@@ -25,4 +28,5 @@ pub use numbering::{Numbering, UNKNOWNS_PER_POINT};
 pub use problem::{Factor, NodalValue, Problem, Tool};
 pub use sample::{ContactPointSample, FieldSampler, NodeSample};
 pub use seed::Seed;
+pub use share::{ContactPlace, FailedElement};
 pub use snapshot::Snapshot;

@@ -216,6 +216,17 @@ impl LocalSystem {
         self.contacts.iter().enumerate().map(status).collect()
     }
 
+    /// Where one of this rank's contact points lies on the undeformed sheet (mm; of a moving point the middle of its
+    /// edge), and on which face.
+    pub fn contact_reference(&self, point: usize) -> ([f64; 2], SurfaceSide) {
+        let contact = &self.contacts[point];
+        let place = [0, 1].map(|k| {
+            let nodes = contact.nodes.iter().zip(contact.law.shape);
+            nodes.map(|(&n, s)| s * self.coordinates[n][k]).sum()
+        });
+        (place, contact.side)
+    }
+
     /// All contact points of this rank at time `t` (ms) and unknowns `u` (local).
     pub fn contact_points(&self, t: f64, u: &[f64]) -> Vec<ContactPointSample> {
         self.contacts
@@ -224,15 +235,7 @@ impl LocalSystem {
             .map(|(point, contact)| {
                 let m = self.multiplier(point);
                 let position = contact.position(&self.edge_positions(contact, u), t);
-                let reference = [0, 1].map(|k| {
-                    let at = |n: &usize| self.coordinates[*n][k];
-                    contact
-                        .nodes
-                        .iter()
-                        .zip(contact.law.shape)
-                        .map(|(n, s)| s * at(n))
-                        .sum()
-                });
+                let (reference, _) = self.contact_reference(point);
                 ContactPointSample {
                     reference,
                     displacement: [position.x[0] - reference[0], position.x[1] - reference[1]],

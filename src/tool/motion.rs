@@ -21,6 +21,15 @@ impl PunchMotion {
         self.stroke * (down - self.unload_fraction * back)
     }
 
+    /// How far the punch has gone at time `t` (ms), down and back together, mm.
+    pub fn way(&self, t: f64) -> f64 {
+        if t <= self.time_load {
+            self.depth(t)
+        } else {
+            2.0 * self.stroke - self.depth(t)
+        }
+    }
+
     /// The end of the whole motion, ms.
     pub fn end(&self) -> f64 {
         if self.unload_fraction > 0.0 {
@@ -71,6 +80,7 @@ mod tests {
         assert_eq!(motion.depth(900.0), 28.5);
         assert!((motion.depth(1000.0) - 25.65).abs() < 1e-14);
         assert_eq!(motion.end(), 1000.0);
+        assert!((motion.way(1000.0) - 31.35).abs() < 1e-12 && motion.way(450.0) == 14.25);
         assert!((motion.depth(motion.time_at_depth(10.0)) - 10.0).abs() < 1e-14);
     }
 }

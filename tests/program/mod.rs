@@ -3,6 +3,7 @@
 #![allow(dead_code)]
 
 use std::collections::BTreeMap;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -39,12 +40,12 @@ pub fn command(ranks: usize, words: &[&str]) -> Command {
         command
     };
     command.args(words);
-    environment(&mut command);
+    for_few_cores(&mut command);
     command
 }
 
 /// Several ranks on few cores, also for root.
-fn environment(command: &mut Command) {
+fn for_few_cores(command: &mut Command) -> &mut Command {
     command
         .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
         .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
@@ -53,12 +54,23 @@ fn environment(command: &mut Command) {
         // More ranks than cores must not wait in a busy loop for those that have none.
         .env("OMPI_MCA_mpi_yield_when_idle", "1")
         .env("OPENBLAS_NUM_THREADS", "1")
-        .env("OMP_NUM_THREADS", "1");
+        .env("OMP_NUM_THREADS", "1")
 }
 
 /// Runs the program with these words, by mpirun if there is more than one rank. A run that takes longer than `seconds`
 /// is ended, with code 110 by mpirun or 124 otherwise.
 pub fn run(ranks: usize, seconds: u32, words: &[&str]) -> Ended {
+    run_in(Path::new("."), None, ranks, seconds, words)
+}
+
+/// The same in a folder, and with a variable in the environment.
+pub fn run_in(
+    folder: &Path,
+    environment: Option<(&str, &str)>,
+    ranks: usize,
+    seconds: u32,
+    words: &[impl AsRef<OsStr>],
+) -> Ended {
     let mut command = Command::new("timeout");
     command.args(["-k", "5"]);
     if ranks == 1 {
@@ -74,7 +86,9 @@ pub fn run(ranks: usize, seconds: u32, words: &[&str]) -> Ended {
         ]);
     }
     command.arg(env!("CARGO_BIN_EXE_ssnp155")).args(words);
-    environment(&mut command);
+    for_few_cores(&mut command)
+        .envs(environment)
+        .current_dir(folder);
     let output = command.output().expect("timeout and mpirun are needed");
     Ended {
         code: output.status.code(),

@@ -1,14 +1,11 @@
-//! The force on the punch against its stroke, ours and code_aster's.
+//! The force on the punch against its stroke, ours and what is known from elsewhere.
 
 use plotters::prelude::RGBColor;
 use plotters::style::text_anchor::HPos;
-use serde::Deserialize;
 
 use super::super::StepRecord;
 use super::canvas::{Canvas, Frame, INK, LABEL_SIZE, TITLE_SIZE, render, text_width, tick_step};
-
-/// code_aster 15.2 on the same model without friction; the file says what it is.
-const CODE_ASTER: &str = include_str!("../../../inputs/reference/code_aster-15.2-frictionless.csv");
+use crate::case::ReferenceForce;
 
 const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 580.0;
@@ -17,16 +14,9 @@ const LOADING: RGBColor = RGBColor(13, 84, 166);
 const UNLOADING: RGBColor = RGBColor(110, 170, 225);
 const REFERENCE: RGBColor = RGBColor(214, 90, 24);
 
-#[derive(Deserialize)]
-struct ReferenceRow {
-    punch_mm: f64,
-    #[serde(rename = "force_punch_N")]
-    force: f64,
-}
-
 /// One curve of the figure: stroke in mm, force in N.
-struct Curve {
-    name: &'static str,
+struct Curve<'a> {
+    name: &'a str,
     color: RGBColor,
     width: f64,
     points: Vec<(f64, f64)>,
@@ -36,10 +26,16 @@ struct Curve {
 /// are left out.
 ///
 /// # Errors
-/// A sentence, if the reference curve cannot be read or the drawing fails.
-pub fn force_svg(title: &str, records: &[StepRecord]) -> Result<String, String> {
-    let curves = curves(records)?;
-    let all = || curves.iter().flat_map(|curve| &curve.points);
+/// A sentence, if the drawing fails.
+pub fn force_svg(
+    title: &str,
+    records: &[StepRecord],
+    reference: &ReferenceForce,
+) -> Result<String, String> {
+    let curves = curves(records, reference);
+    let single = reference.points.iter().map(|&[x, y, _]| (x, y));
+    let single: Vec<_> = single.collect();
+    let all = || curves.iter().flat_map(|curve| &curve.points).chain(&single);
     let (x, y) = (
         range(all().map(|point| point.0)),
         range(all().map(|point| point.1)),
@@ -67,6 +63,7 @@ pub fn force_svg(title: &str, records: &[StepRecord]) -> Result<String, String> 
             let pixels: Vec<_> = curve.points.iter().map(|&(x, y)| frame.at(x, y)).collect();
             canvas.line(&pixels, curve.color, curve.width)?;
         }
+        tolerances(canvas, &frame, reference)?;
         frame.axes(
             canvas,
             "punch stroke in mm",
@@ -76,7 +73,7 @@ pub fn force_svg(title: &str, records: &[StepRecord]) -> Result<String, String> 
 }
 
 /// In the order they are drawn: the reference lies on top of ours, being the thin line.
-fn curves(records: &[StepRecord]) -> Result<Vec<Curve>, String> {
+fn curves<'a>(records: &[StepRecord], reference: &'a ReferenceForce) -> Vec<Curve<'a>> {
     let ours = records
         .iter()
         .map(|record| (record.stroke_mm, record.force_N));
@@ -106,26 +103,39 @@ fn curves(records: &[StepRecord]) -> Result<Vec<Curve>, String> {
             },
         );
     }
-    let name = "code_aster 15.2, without friction";
-    curves.push(Curve {
-        name,
-        color: REFERENCE,
-        width: 1.2,
-        points: reference()?,
-    });
-    Ok(curves)
+    if !reference.curve.is_empty() {
+        curves.push(Curve {
+            name: &reference.name,
+            color: REFERENCE,
+            width: 1.2,
+            points: reference.curve.iter().map(|&[x, y]| (x, y)).collect(),
+        });
+    }
+    if !reference.points.is_empty() {
+        // Drawn as bars, not as a line; here for the legend.
+        curves.push(Curve {
+            name: "reference values with tolerance",
+            color: REFERENCE,
+            width: 2.0,
+            points: Vec::new(),
+        });
+    }
+    curves
 }
 
-fn reference() -> Result<Vec<(f64, f64)>, String> {
-    let mut table = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .from_reader(CODE_ASTER.as_bytes());
-    let rows = table.deserialize::<ReferenceRow>();
-    rows.map(|row| {
-        row.map(|row| (row.punch_mm, row.force))
-            .map_err(|error| error.to_string())
-    })
-    .collect()
+/// A bar over the tolerance of each single value, with its ends.
+fn tolerances(canvas: &Canvas, frame: &Frame, reference: &ReferenceForce) -> Result<(), String> {
+    const HALF_WIDTH: f64 = 4.0;
+    for &[depth, force, tolerance] in &reference.points {
+        let (x, low) = frame.at(depth, force - tolerance);
+        let (_, high) = frame.at(depth, force + tolerance);
+        let (_, middle) = frame.at(depth, force);
+        canvas.line(&[(x, low), (x, high)], REFERENCE, 2.0)?;
+        for y in [low, middle, high] {
+            canvas.line(&[(x - HALF_WIDTH, y), (x + HALF_WIDTH, y)], REFERENCE, 1.5)?;
+        }
+    }
+    Ok(())
 }
 
 /// From 0 (or the tick below the lowest value) to the tick above the highest.
@@ -168,17 +178,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_reference_curve_is_compiled_in() {
-        let curve = reference().unwrap();
-        assert!(curve.len() > 190);
-        assert!(
-            curve
-                .iter()
-                .any(|&(stroke, force)| stroke == 28.5 && force == 268.37)
-        );
-    }
-
-    #[test]
     fn the_curve_is_split_at_the_largest_stroke() {
         let strokes = [0.0, 10.0, 28.5, 27.0, 25.65];
         let records = strokes.map(|stroke_mm| StepRecord {
@@ -186,7 +185,8 @@ mod tests {
             force_N: 10.0 * stroke_mm,
             ..Default::default()
         });
-        let curves = curves(&records).unwrap();
+        let none = ReferenceForce::default();
+        let curves = curves(&records, &none);
         let points = |name: &str| {
             curves
                 .iter()
@@ -196,7 +196,7 @@ mod tests {
                 .len()
         };
         assert_eq!((points(" loading"), points("unloading")), (3, 3));
-        let svg = force_svg("title & more", &records).unwrap();
+        let svg = force_svg("title & more", &records, &none).unwrap();
         assert!(
             svg.starts_with("<svg width=\"900\" height=\"580\" stroke-linejoin"),
             "{}",
@@ -206,7 +206,15 @@ mod tests {
     }
 
     #[test]
-    fn a_run_without_a_single_step_still_gives_the_reference() {
-        assert!(force_svg("nothing yet", &[]).is_ok());
+    fn the_reference_is_drawn_only_if_there_is_one() {
+        let reference = ReferenceForce {
+            name: "somebody".into(),
+            curve: vec![[0.0, 0.0], [1.0, 50.0]],
+            points: vec![[0.5, 25.0, 1.0]],
+        };
+        let with = force_svg("nothing yet", &[], &reference).unwrap();
+        assert!(with.contains("somebody") && with.contains("with tolerance"));
+        let without = force_svg("nothing yet", &[], &ReferenceForce::default()).unwrap();
+        assert!(!without.contains("somebody") && !without.contains("tolerance"));
     }
 }

@@ -8,15 +8,18 @@ mod color;
 mod elements;
 mod force;
 mod geometry;
+mod model;
 mod shape;
 
 use std::path::Path;
 
 pub use elements::{DeformedElement, gather_elements};
 pub use force::force_svg;
+pub use model::model_svg;
 pub use shape::{Shape, View, shape_svg};
 
 use super::{OutputError, StepRecord, atomic};
+use crate::case::{Case, ReferenceForce};
 
 /// Draws [`force_svg`] into a file.
 ///
@@ -26,8 +29,9 @@ pub fn force(
     path: impl AsRef<Path>,
     title: &str,
     records: &[StepRecord],
+    reference: &ReferenceForce,
 ) -> Result<(), OutputError> {
-    store(path.as_ref(), force_svg(title, records))
+    store(path.as_ref(), force_svg(title, records, reference))
 }
 
 /// Draws [`shape_svg`] into a file.
@@ -36,6 +40,19 @@ pub fn force(
 /// [`OutputError::Figure`] if it cannot be drawn, [`OutputError::Write`] if it cannot be written.
 pub fn shape(path: impl AsRef<Path>, shape: &Shape) -> Result<(), OutputError> {
     store(path.as_ref(), shape_svg(shape))
+}
+
+/// Draws [`model_svg`] into a file.
+///
+/// # Errors
+/// [`OutputError::Figure`] if it cannot be drawn, [`OutputError::Write`] if it cannot be written.
+pub fn model(
+    path: impl AsRef<Path>,
+    case: &Case,
+    die: &[[f64; 2]],
+    punch: &[[f64; 2]],
+) -> Result<(), OutputError> {
+    store(path.as_ref(), model_svg(case, die, punch))
 }
 
 fn store(path: &Path, svg: Result<String, String>) -> Result<(), OutputError> {

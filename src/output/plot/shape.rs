@@ -10,9 +10,9 @@ use super::geometry::{
     boundary, clipped, curve, die_outline, grown, outline, punch_outline, region,
 };
 
-const DIE: RGBColor = RGBColor(205, 209, 215);
-const PUNCH: RGBColor = RGBColor(222, 225, 230);
-const MARK: RGBColor = RGBColor(190, 24, 60);
+pub(super) const DIE: RGBColor = RGBColor(205, 209, 215);
+pub(super) const PUNCH: RGBColor = RGBColor(222, 225, 230);
+pub(super) const MARK: RGBColor = RGBColor(190, 24, 60);
 
 /// Side of the close-up, mm: wide enough for the gap on both sides of a sheet of 1 mm.
 const CLOSE_UP_SIDE: f64 = 5.0;

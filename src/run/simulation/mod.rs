@@ -17,10 +17,11 @@ use super::linear::LinearSolve;
 use super::newton::{Damping, TangentInertia};
 use super::recorder::Recorder;
 use super::refusal::Refusal;
+use super::solve_watch::SolveWatch;
 use super::spent::Spent;
 use super::springback::{Springback, springback};
 use super::step_size::StepControl;
-use super::watch::Watch;
+use super::stop_watch::StopWatch;
 use super::{RunError, defaults};
 use crate::case::{Case, Dynamics};
 use crate::output::StepRecord;
@@ -38,6 +39,10 @@ pub(super) struct Simulation {
     ledger: RefCell<Ledger>,
     damping: RefCell<Damping>,
     inertia: Rc<TangentInertia>,
+    watch: RefCell<SolveWatch>,
+    /// Absolute tolerance on the residual norm, mm, and most iterations of a solve.
+    tolerance: f64,
+    most_iterations: usize,
     /// Solution before the last accepted step, and the length of that step (ms); none at the start
     /// and where the punch turns.
     before: RefCell<Option<(Vector, f64)>>,
@@ -62,7 +67,7 @@ pub(super) struct Simulation {
     springbacks: RefCell<Vec<Springback>>,
     /// Velocity and acceleration; none in statics.
     alpha: RefCell<Option<Alpha2State>>,
-    watch: RefCell<Watch>,
+    stop_watch: RefCell<StopWatch>,
     spent: Spent,
     /// What a checkpoint says about the case it belongs to.
     identity: RunState,
@@ -101,7 +106,7 @@ impl Simulation {
         system: Rc<System>,
         recorder: Recorder,
         landmarks: Vec<f64>,
-        watch: Watch,
+        stop_watch: StopWatch,
         spent: Spent,
     ) -> Result<Self, RunError> {
         let stepping = &case.stepping;
@@ -118,6 +123,9 @@ impl Simulation {
             ledger: RefCell::default(),
             damping: RefCell::default(),
             inertia: Rc::new(TangentInertia::own()),
+            watch: RefCell::default(),
+            tolerance: stepping.newton_tolerance,
+            most_iterations: stepping.newton_max_iterations,
             before: RefCell::new(None),
             accepted: RefCell::new(accepted),
             accepted_time: Cell::new(0.0),
@@ -133,7 +141,7 @@ impl Simulation {
             counts: Cell::default(),
             springbacks: RefCell::default(),
             alpha: RefCell::new(None),
-            watch: RefCell::new(watch),
+            stop_watch: RefCell::new(stop_watch),
             spent,
             identity: RunState {
                 options: case
@@ -180,7 +188,7 @@ impl Simulation {
         self.recorder.borrow_mut().begin(resumed);
         let reason = self.solve(&mut ts)?;
         let given_up = reason.is_diverged() && self.counts.get().steps > 0;
-        let checkpoint = if given_up && self.watch.borrow().saves_regularly() {
+        let checkpoint = if given_up && self.stop_watch.borrow().saves_regularly() {
             Some(self.save()?)
         } else {
             None
@@ -293,14 +301,7 @@ impl Simulation {
         counts.newton += u64::from(iterations);
         if reason.is_diverged() {
             counts.refused += 1;
-            self.refusals.borrow_mut().push(Refusal {
-                time: t,
-                dt: ts.time_step()?,
-                reason,
-                iterations,
-                norms: self.damping.borrow().norms().to_vec(),
-                element: self.system.take_failure(),
-            });
+            self.refuse(t, ts.time_step()?, reason, iterations);
         }
         self.counts.set(counts);
         // PETSc would go on shortening the step, or repeating the first one: stop it where it must not.
@@ -309,6 +310,22 @@ impl Simulation {
             ts.set_max_step_rejections(0)?;
         }
         Ok(())
+    }
+
+    /// Notes a solve that did not converge, and shows it. Collective.
+    fn refuse(&self, t: f64, dt: f64, reason: SnesReason, iterations: u32) {
+        let watch = self.watch.borrow();
+        let refusal = Refusal::new(
+            &self.system,
+            &watch,
+            (t, dt),
+            reason,
+            iterations,
+            self.tolerance,
+        );
+        let mut recorder = self.recorder.borrow_mut();
+        recorder.show(&format!("         refused: {refusal}\n"));
+        self.refusals.borrow_mut().push(refusal);
     }
 
     fn after_step(&self, ts: &mut TsRef) -> Result<(), CallbackError> {

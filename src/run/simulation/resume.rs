@@ -9,7 +9,7 @@ use petsc::{Alpha2State, CallbackError, Ts, TsReason, TsRef, Vector, VectorRef};
 
 use super::super::RunError;
 use super::super::checkpoint::{Resumed, RunState};
-use super::super::watch::{Order, StopCause};
+use super::super::stop_watch::{Order, StopCause};
 use super::Simulation;
 use crate::output::OutputError;
 
@@ -35,7 +35,7 @@ impl Simulation {
     /// After an accepted step that is not the last: writes a checkpoint if one is due, and ends the run if it is asked
     /// to.
     pub(super) fn save_or_stop(&self, ts: &mut TsRef) -> Result<(), CallbackError> {
-        let order = self.watch.borrow_mut().after_step(self.system.comm());
+        let order = self.stop_watch.borrow_mut().after_step(self.system.comm());
         match order {
             Order::GoOn => {}
             Order::Save => {
@@ -59,7 +59,7 @@ impl Simulation {
         let began = Instant::now();
         let state = self.state()?;
         let path = self.recorder.borrow().checkpoint(&self.system, &state)?;
-        self.watch.borrow_mut().saved(began);
+        self.stop_watch.borrow_mut().saved(began);
         Ok(path)
     }
 

@@ -7,6 +7,7 @@ use petsc::{
 use super::super::ledger::LEAST_FORCE;
 use super::super::newton::limited_length;
 use super::Simulation;
+use crate::run::solve_watch::SolveWatch;
 
 /// Largest imbalance and largest pull of a contact point after a converged solve, as a share of the
 /// last punch force.
@@ -22,6 +23,7 @@ impl Simulation {
         snes: &SnesRef,
         check: &ConvergenceCheck,
     ) -> Result<SnesReason, CallbackError> {
+        self.watch_solve(snes, check)?;
         if check.default != SnesReason::ConvergedAbsolute || check.residual_norm <= BALANCE_FLOOR {
             return Ok(check.default);
         }
@@ -33,6 +35,17 @@ impl Simulation {
         } else {
             SnesReason::Iterating
         })
+    }
+
+    fn watch_solve(&self, snes: &SnesRef, check: &ConvergenceCheck) -> Result<(), CallbackError> {
+        let iteration = check.iteration.unsigned_abs() as usize;
+        let mut watch = self.watch.borrow_mut();
+        watch.residual(iteration, check.residual_norm);
+        if SolveWatch::looks(iteration, self.most_iterations) {
+            let t = self.attempted_time.get();
+            watch.status(self.system.contact_status(t, snes.solution()?)?);
+        }
+        Ok(())
     }
 
     pub(super) fn before_solve(&self, ts: &mut TsRef, t: f64) -> Result<(), CallbackError> {

@@ -50,7 +50,7 @@ impl StopCause {
 }
 
 /// Looks at the clock and at signals between steps.
-pub(super) struct Watch {
+pub(super) struct StopWatch {
     wishes: Resuming,
     /// Place in [`SIGNALS`] of the last signal received, from 1.
     signal: Arc<AtomicUsize>,
@@ -62,7 +62,7 @@ pub(super) struct Watch {
     longest_save: Duration,
 }
 
-impl Watch {
+impl StopWatch {
     /// From here on the signals do not end the process at once. The clock of the limit began at `start`.
     ///
     /// # Errors
