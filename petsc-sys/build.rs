@@ -19,7 +19,7 @@ const FUNCTIONS: &[&str] = &[
     "Vec(Create|CreateSeq|CreateMPI|Destroy|Duplicate|SetSizes|SetType|SetFromOptions)",
     "VecGet(Array|ArrayRead|LocalSize|Size|OwnershipRange)",
     "VecRestore(Array|ArrayRead)",
-    "Vec(Set|Copy|AXPY|AYPX|WAXPY|Scale|Dot|Norm|Sum|PlaceArray|ResetArray|PointwiseMult)",
+    "Vec(Set|Copy|AXPY|AXPBY|AYPX|WAXPY|Scale|Dot|Norm|Sum|PlaceArray|ResetArray|PointwiseMult)",
     "VecScatter(Create|Destroy|Begin|End)",
     // Matrices and factorisations.
     "Mat(Create|Destroy|Duplicate|SetSizes|SetType|SetOption|SetOptionsPrefix|SetFromOptions|SetUp)",

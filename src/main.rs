@@ -12,10 +12,12 @@ use ssnp155::case::{
     Case, ENVIRONMENT, OptionSource, arguments_as_text, check_arguments, check_environment,
     check_ranks, help_text,
 };
-use ssnp155::run::{conclude, simulate};
+use ssnp155::run::{Ending, conclude, simulate};
 
 /// Exit code of a run that did not finish, or whose verdicts do not hold.
 const NOT_HELD: u8 = 1;
+/// Exit code of a run that was ended on request and can go on.
+const INTERRUPTED: u8 = 3;
 /// Exit code of a run that could not be made.
 const REFUSED: u8 = 2;
 
@@ -27,8 +29,9 @@ fn main() -> ExitCode {
     let world = universe.world();
     // A panic on one rank would leave the others waiting for ever, so it ends them all.
     match catch_unwind(AssertUnwindSafe(|| program(&world))) {
-        Ok(Ok(true)) => ExitCode::SUCCESS,
-        Ok(Ok(false)) => ExitCode::from(NOT_HELD),
+        Ok(Ok(Ending::Holds)) => ExitCode::SUCCESS,
+        Ok(Ok(Ending::DoesNotHold)) => ExitCode::from(NOT_HELD),
+        Ok(Ok(Ending::Interrupted)) => ExitCode::from(INTERRUPTED),
         Ok(Err(Refused)) => ExitCode::from(REFUSED),
         Err(_) => world.abort(i32::from(REFUSED)),
     }
@@ -37,8 +40,8 @@ fn main() -> ExitCode {
 /// There was no run; the reason has been told.
 struct Refused;
 
-/// Whether the run finished and everything it is judged by holds. Collective.
-fn program(world: &SimpleCommunicator) -> Result<bool, Refused> {
+/// How the run ended. Collective.
+fn program(world: &SimpleCommunicator) -> Result<Ending, Refused> {
     let args = agree(world, arguments_as_text(std::env::args_os()))?;
     agree(world, check_environment(std::env::var_os(ENVIRONMENT)))?;
     agree(world, check_arguments(args.get(1..).unwrap_or_default()))?;
@@ -52,7 +55,7 @@ fn program(world: &SimpleCommunicator) -> Result<bool, Refused> {
     match outcome {
         Some(outcome) => agree(world, conclude(&case, outcome, &session, world)),
         // Help was asked for, and given.
-        None => Ok(true),
+        None => Ok(Ending::Holds),
     }
 }
 

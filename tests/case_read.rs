@@ -127,6 +127,10 @@ fn what_is_shown_reads_back_as_the_same_case() {
         ("output_dir", "elsewhere"),
         ("output_every", "0"),
         ("monitor_iterations", "true"),
+        ("checkpoint_every", "20"),
+        ("checkpoint_minutes", "7.5"),
+        ("wall_limit", "3600"),
+        ("restart", "results/checkpoint-000123"),
         ("dry_run", "true"),
     ];
     let case = read(&given).unwrap();
@@ -262,8 +266,8 @@ fn whole_numbers_words_and_flags_are_what_they_are() {
 fn an_option_without_its_value_is_refused() {
     for (name, _) in Case::reference().unwrap().options() {
         let read = read(&[(name, "")]);
-        let is_flag = ["extrapolate", "monitor_iterations", "dry_run"].contains(&name);
-        assert_eq!(read.is_ok(), is_flag, "-{name}");
+        let bare = ["extrapolate", "monitor_iterations", "dry_run", "restart"];
+        assert_eq!(read.is_ok(), bare.contains(&name), "-{name}");
     }
     assert_eq!(
         refusal(&[("hardening_file", "")]),

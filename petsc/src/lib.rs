@@ -53,7 +53,7 @@ pub use reason::{KspReason, SnesReason, TsReason};
 pub use scatter::Scatter;
 pub use session::{Session, memory_bytes};
 pub use snes::{ConvergenceCheck, LineSearchInfo, Snes, SnesRef, Tolerances};
-pub use ts::{AlphaParameters, ExactFinalTime, Ts, TsRef};
+pub use ts::{Alpha2State, AlphaParameters, ExactFinalTime, Ts, TsRef};
 pub use vector::{Vector, VectorRef};
 
 /// The value that stands for "no bound" in bounds of variables (PETSc's `PETSC_INFINITY`).

@@ -150,6 +150,24 @@ impl VectorRef {
         check(unsafe { sys::VecAXPY(self.raw(), a, x.raw()) })
     }
 
+    /// `self = a x + b self`.
+    ///
+    /// # Errors
+    /// If the layouts differ.
+    pub fn axpby(&mut self, a: f64, b: f64, x: &VectorRef) -> Result<()> {
+        // SAFETY: two live vectors; PETSc checks their layouts.
+        check(unsafe { sys::VecAXPBY(self.raw(), a, b, x.raw()) })
+    }
+
+    /// `self = x + a self`.
+    ///
+    /// # Errors
+    /// If the layouts differ.
+    pub fn aypx(&mut self, a: f64, x: &VectorRef) -> Result<()> {
+        // SAFETY: two live vectors; PETSc checks their layouts.
+        check(unsafe { sys::VecAYPX(self.raw(), a, x.raw()) })
+    }
+
     /// `self = a x + y`.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ mod common;
 use std::{cell::RefCell, rc::Rc};
 
 use mpi::topology::SimpleCommunicator;
-use petsc::{CallbackError, Matrix, Ts, TsReason, Vector};
+use petsc::{Alpha2State, CallbackError, Matrix, Ts, TsReason, Vector};
 
 fn main() {
     common::run(&[
@@ -19,6 +19,10 @@ fn main() {
         ),
         ("a_jump_of_the_solution_is_a_start", jump),
         ("a_start_that_failed_is_cured_again", failed_start),
+        (
+            "a_state_put_into_the_method_goes_on_to_the_last_bit",
+            state_goes_on,
+        ),
         ("interpolation_at_the_end_is_refused", interpolation),
         ("hooks_see_times_in_order", hooks),
     ]);
@@ -142,6 +146,71 @@ fn failed_start(comm: &SimpleCommunicator) {
     ts.set_time_step(0.1).unwrap();
     assert_eq!(ts.solve().unwrap(), TsReason::ConvergedTime);
     assert_eq!(starts.take()[..4], [true, true, true, false]);
+}
+
+/// Steps of changing length, so that a wrong acceleration cannot hide; one of them is refused once.
+fn vary_and_follow(ts: &mut Ts, state: &Rc<RefCell<Alpha2State>>) {
+    let follower = Rc::clone(state);
+    ts.set_pre_stage(move |ts, _| Ok(follower.borrow_mut().attempt(ts)?))
+        .unwrap();
+    let follower = Rc::clone(state);
+    ts.set_post_step(move |ts| {
+        follower.borrow_mut().accepted(ts)?;
+        let step = f64::from(ts.step_number()?);
+        Ok(ts.set_time_step(0.05 + 0.01 * (3.0 * step).sin())?)
+    })
+    .unwrap();
+    ts.set_stage_check(|ts, time, _| {
+        if (0.5..0.58).contains(&time) && ts.time_step()? > 0.04 {
+            Err(petsc::Failure::Domain)
+        } else {
+            Ok(())
+        }
+    })
+    .unwrap();
+    ts.set_max_snes_failures(-1).unwrap();
+    ts.set_exact_final_time(petsc::ExactFinalTime::StepOver)
+        .unwrap();
+}
+
+fn state_goes_on(comm: &SimpleCommunicator) {
+    for radius in [0.0, 0.3, 0.8] {
+        let run = |ts: &mut Ts, state: &Rc<RefCell<Alpha2State>>, steps| {
+            vary_and_follow(ts, state);
+            ts.set_max_steps(steps).unwrap();
+            assert_eq!(ts.solve().unwrap(), TsReason::ConvergedSteps);
+            assert!(state.borrow().is_exact());
+            let (u, v) = ts.solution2().unwrap();
+            (u.read().unwrap()[0], v.read().unwrap()[0])
+        };
+        let start = |ts: &Ts| {
+            let none = ts.solution().unwrap().duplicate().unwrap();
+            Rc::new(RefCell::new(Alpha2State::new(ts, &none).unwrap()))
+        };
+        let mut unbroken = oscillator(comm, radius, 20);
+        let state = start(&unbroken);
+        let expected = run(&mut unbroken, &state, 15);
+        for stop in [1, 4, 9, 14] {
+            let mut first = oscillator(comm, radius, 20);
+            let state = start(&first);
+            run(&mut first, &state, stop);
+            let mut second = oscillator(comm, radius, 20);
+            let (u, _) = first.solution2().unwrap();
+            let (time, next) = (first.time().unwrap(), first.time_step().unwrap());
+            let (v, a) = (
+                state.borrow().velocity().to_owned().unwrap(),
+                state.borrow().acceleration().to_owned().unwrap(),
+            );
+            second.alpha2_set_state(u, &v, &a, time, stop).unwrap();
+            second.set_time_step(next).unwrap();
+            let state = Rc::new(RefCell::new(Alpha2State::new(&second, &a).unwrap()));
+            assert_eq!(
+                run(&mut second, &state, 15),
+                expected,
+                "radius {radius}, stop {stop}"
+            );
+        }
+    }
 }
 
 fn interpolation(comm: &SimpleCommunicator) {

@@ -9,6 +9,7 @@ mod error;
 mod geometry;
 mod help;
 mod kind;
+mod kind_resuming;
 mod model;
 mod option;
 mod option_file;
@@ -25,8 +26,8 @@ pub use error::{CaseError, Warning};
 pub use geometry::check_ranks;
 pub use help::{help_text, options_markdown};
 pub use model::{
-    Case, Discretisation, Dynamics, Friction, Loading, Material, OptionSource, Output, Sheet,
-    Stepping, Tools,
+    Case, Discretisation, Dynamics, Friction, Loading, Material, OptionSource, Output, Restart,
+    Resuming, Sheet, Stepping, Tools,
 };
 pub use provenance::Difference;
 pub use reference::{Instant, ReferenceValue, Tolerance};

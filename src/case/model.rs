@@ -41,6 +41,8 @@ pub struct Case {
     pub stepping: Stepping,
     /// What is written where.
     pub output: Output,
+    /// When to stop, and from where to go on.
+    pub resuming: Resuming,
 }
 
 /// The sheet: x in [0, length / 2], y in [0, thickness]; x = 0 is the plane of symmetry.
@@ -207,6 +209,30 @@ pub struct Output {
     pub dry_run: bool,
 }
 
+/// Checkpoints, when to stop, and from where to go on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Resuming {
+    /// Accepted steps between checkpoints; 0: steps are not counted.
+    pub checkpoint_every: usize,
+    /// Minutes on the clock between checkpoints; 0: the clock is not looked at.
+    pub checkpoint_minutes: f64,
+    /// Seconds on the clock before which the run is to end.
+    pub wall_limit: Option<f64>,
+    /// Whether to go on from a checkpoint.
+    pub restart: Restart,
+}
+
+/// From where a run goes on.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Restart {
+    /// From the undeformed sheet.
+    No,
+    /// From the newest checkpoint in the directory of the results.
+    Newest,
+    /// From the checkpoint with this path.
+    From(String),
+}
+
 impl Case {
     /// The case the options describe; options that are not given have their defaults, which are the reference case.
     ///
@@ -262,6 +288,12 @@ impl Case {
                 every: table::OUTPUT_EVERY.read(options)?,
                 iterations: table::MONITOR_ITERATIONS.read(options)?,
                 dry_run: table::DRY_RUN.read(options)?,
+            },
+            resuming: Resuming {
+                checkpoint_every: table::CHECKPOINT_EVERY.read(options)?,
+                checkpoint_minutes: table::CHECKPOINT_MINUTES.read(options)?,
+                wall_limit: table::WALL_LIMIT.read(options)?,
+                restart: table::RESTART.read(options)?,
             },
         };
         geometry::check(&case)?;

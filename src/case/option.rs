@@ -16,11 +16,12 @@ pub(crate) enum Group {
     Discretisation,
     Stepping,
     Output,
+    Resuming,
 }
 
 impl Group {
     /// All groups in the order in which they are listed.
-    pub(crate) const ALL: [Group; 8] = [
+    pub(crate) const ALL: [Group; 9] = [
         Group::Sheet,
         Group::Tools,
         Group::Loading,
@@ -29,6 +30,7 @@ impl Group {
         Group::Discretisation,
         Group::Stepping,
         Group::Output,
+        Group::Resuming,
     ];
 
     /// The heading.
@@ -42,12 +44,13 @@ impl Group {
             Group::Discretisation => "Discretisation",
             Group::Stepping => "Stepping",
             Group::Output => "Output",
+            Group::Resuming => "Stop and resume",
         }
     }
 
     /// Whether its options define the physics and the mesh, as opposed to how the solution is reached and saved.
     pub(crate) fn defines_model(self) -> bool {
-        !matches!(self, Group::Stepping | Group::Output)
+        !matches!(self, Group::Stepping | Group::Output | Group::Resuming)
     }
 }
 

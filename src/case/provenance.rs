@@ -1,7 +1,10 @@
 //! What a case says about itself: all effective options, and how far it is from the reference case.
 
+use std::collections::BTreeMap;
+
 use super::error::CaseError;
 use super::model::Case;
+use super::option::{Described, Group};
 use super::table::{self, TABLE};
 
 /// An option whose value is not that of the reference case.
@@ -22,6 +25,44 @@ impl Case {
             .iter()
             .map(|option| (option.name(), option.shown(self)))
             .collect()
+    }
+
+    /// How this case differs from another one that was saved by [`Case::options`]: where physics or mesh differ, and where
+    /// only the way to the solution does. The value of the other case is called the reference. Paths of hardening tables
+    /// are not compared.
+    pub fn differences_from_saved(
+        &self,
+        saved: &BTreeMap<String, String>,
+    ) -> (Vec<Difference>, Vec<Difference>) {
+        let compared = |option: &&&dyn Described| {
+            let group = option.group();
+            (group.defines_model() || group == Group::Stepping)
+                && option.name() != table::HARDENING_FILE.name
+        };
+        let missing = || "not known".to_owned();
+        TABLE
+            .iter()
+            .filter(compared)
+            .map(|option| {
+                let then = saved.get(option.name()).cloned().unwrap_or_else(missing);
+                (
+                    option.group().defines_model(),
+                    Difference {
+                        option: option.name(),
+                        value: option.shown(self),
+                        reference: then,
+                    },
+                )
+            })
+            .filter(|(_, difference)| difference.value != difference.reference)
+            .fold((Vec::new(), Vec::new()), |mut both, (model, difference)| {
+                if model {
+                    both.0.push(difference)
+                } else {
+                    both.1.push(difference)
+                }
+                both
+            })
     }
 
     /// The options that make physics or mesh differ from the reference case; time steps, tolerances and output may differ

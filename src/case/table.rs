@@ -6,6 +6,7 @@
 use std::ops::Bound;
 
 use super::kind::{Choice, Flag, Integer, List, Path, Real};
+use super::kind_resuming::{Restarting, WallTime};
 use super::model::Dynamics;
 use super::option::{Described, Group, Opt};
 use crate::contact::ContactLocation;
@@ -225,5 +226,28 @@ option_table! {
         name: "output_every", unit: "", default: "1", group: Group::Output, kind: Integer(0, 1_000_000),
         meaning: "Fields are saved every so many accepted steps; 0 saves them at the ends of loading and unloading only.",
         value: |case| case.output.every,
+    }
+    CHECKPOINT_EVERY: Integer {
+        name: "checkpoint_every", unit: "", default: "0", group: Group::Resuming, kind: Integer(0, 1_000_000),
+        meaning: "A checkpoint is written every so many accepted steps; 0 counts no steps.",
+        value: |case| case.resuming.checkpoint_every,
+    }
+    CHECKPOINT_MINUTES: Real {
+        name: "checkpoint_minutes", unit: "min", default: "10", group: Group::Resuming,
+        kind: Real(Bound::Included(0.0), Bound::Included(1e6)),
+        meaning: "A checkpoint is written when so many minutes on the clock have gone by since the last one; 0 looks at no \
+                  clock.",
+        value: |case| case.resuming.checkpoint_minutes,
+    }
+    WALL_LIMIT: WallTime {
+        name: "wall_limit", unit: "", default: "none", group: Group::Resuming, kind: WallTime,
+        meaning: "Time on the clock before which the run writes a checkpoint and ends.",
+        value: |case| case.resuming.wall_limit,
+    }
+    RESTART: Restarting {
+        name: "restart", unit: "", default: "no", group: Group::Resuming, kind: Restarting,
+        meaning: "Goes on from the newest checkpoint in -output_dir (newest, or no value), or from the one whose path is \
+                  given.",
+        value: |case| case.resuming.restart.clone(),
     }
 }

@@ -71,6 +71,14 @@ pub enum OutputError {
         /// What does not fit.
         reason: String,
     },
+    /// A checkpoint is damaged, or not one.
+    #[error("the checkpoint {} cannot be used: {reason}", path.display())]
+    Checkpoint {
+        /// Its folder.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// A figure could not be drawn.
     #[error("cannot draw the figure {}: {reason}", path.display())]
     Figure {

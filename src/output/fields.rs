@@ -142,6 +142,14 @@ impl SheetFile {
         Ok(Self { series })
     }
 
+    /// Begins with the steps of an earlier file, in which row `rows[i]` of every step is node i of this rank's part.
+    ///
+    /// # Errors
+    /// As [`TimeSeries::replay`].
+    pub fn replay(&mut self, from: &Path, rows: &[usize]) -> Result<(), OutputError> {
+        self.series.replay(from, rows)
+    }
+
     /// Adds the state at `t_ms`, one sample for each local node in the order of [`SheetPart::coordinates`].
     ///
     /// # Errors
@@ -216,6 +224,15 @@ impl ToolsFile {
         })
     }
 
+    /// Begins with the steps of an earlier file of the same tools.
+    ///
+    /// # Errors
+    /// As [`TimeSeries::replay`].
+    pub fn replay(&mut self, from: &Path) -> Result<(), OutputError> {
+        let rows: Vec<usize> = (0..self.die_points + self.punch_points).collect();
+        self.series.replay(from, &rows)
+    }
+
     /// Adds the state at `t_ms` with the punch moved down by `stroke_mm`.
     ///
     /// # Errors
@@ -253,6 +270,14 @@ impl ContactFile {
         Ok(Self {
             series: TimeSeries::create(path, comm, &part, &CONTACT_ARRAYS, &[])?,
         })
+    }
+
+    /// Begins with the steps of an earlier file, in which row `rows[i]` of every step is point i of this rank.
+    ///
+    /// # Errors
+    /// As [`TimeSeries::replay`].
+    pub fn replay(&mut self, from: &Path, rows: &[usize]) -> Result<(), OutputError> {
+        self.series.replay(from, rows)
     }
 
     /// Adds the state at `t_ms`, one sample for each of this rank's points.

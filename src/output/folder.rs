@@ -1,11 +1,23 @@
 //! The output folder: made once, checked once, the same answer on every rank.
 
 use std::fs::{self, File};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use mpi::traits::Communicator;
 
-use super::{OutputError, agreement::agree};
+use super::{OutputError, agreement::agree, checkpoint};
+
+/// The table of steps.
+pub(crate) const HISTORY: &str = "history.csv";
+/// The fields of the sheet.
+pub(crate) const FIELDS: &str = "fields.vtkhdf";
+/// The tools.
+pub(crate) const TOOLS: &str = "tools.vtkhdf";
+/// The contact points.
+pub(crate) const CONTACT: &str = "contact.vtkhdf";
+/// How the run ended.
+const SUMMARY: &str = "summary.json";
 
 /// A folder that exists and takes files, as far as rank 0 could check.
 #[derive(Debug, Clone)]
@@ -31,6 +43,22 @@ impl OutputDir {
         Ok(Self { path: path.into() })
     }
 
+    /// Removes what an earlier run said about its end, and its checkpoints newer than `step` (all, with none): a run
+    /// that is killed must not leave another one's good end behind. Not collective.
+    ///
+    /// # Errors
+    /// [`OutputError::Write`] if something cannot be removed.
+    pub fn forget(&self, step: Option<u64>) -> Result<(), OutputError> {
+        checkpoint::remove_newer(&self.path, step)?;
+        let summary = self.summary();
+        match fs::remove_file(&summary) {
+            Err(error) if error.kind() != ErrorKind::NotFound => {
+                Err(OutputError::write(&summary, error))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The folder itself.
     pub fn path(&self) -> &Path {
         &self.path
@@ -43,27 +71,27 @@ impl OutputDir {
 
     /// `history.csv`, see [`super::History`].
     pub fn history(&self) -> PathBuf {
-        self.file("history.csv")
+        self.file(HISTORY)
     }
 
     /// `fields.vtkhdf`, see [`super::SheetFile`].
     pub fn fields(&self) -> PathBuf {
-        self.file("fields.vtkhdf")
+        self.file(FIELDS)
     }
 
     /// `tools.vtkhdf`, see [`super::ToolsFile`].
     pub fn tools(&self) -> PathBuf {
-        self.file("tools.vtkhdf")
+        self.file(TOOLS)
     }
 
     /// `contact.vtkhdf`, see [`super::ContactFile`].
     pub fn contact(&self) -> PathBuf {
-        self.file("contact.vtkhdf")
+        self.file(CONTACT)
     }
 
     /// `summary.json`, see [`super::Summary`].
     pub fn summary(&self) -> PathBuf {
-        self.file("summary.json")
+        self.file(SUMMARY)
     }
 
     /// `report.html`, see [`super::Report`].

@@ -1,6 +1,6 @@
 //! `history.csv`: one row per accepted step, on disk as soon as the step is.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 use super::{OutputError, StepRecord};
@@ -28,51 +28,13 @@ impl History {
         })
     }
 
-    /// Continues the table of an earlier run: keeps its rows up to and including `last_t_ms` (ms) and appends after.
-    /// What a kill cut off after that time does no harm.
+    /// Continues the table of an earlier run: its rows so far are those of the file `rows`, which is left alone.
     ///
     /// # Errors
-    /// [`OutputError::Read`] if the old table does not reach `last_t_ms`, [`OutputError::Write`] if it cannot be
-    /// written.
-    pub fn resume(path: impl AsRef<Path>, last_t_ms: f64) -> Result<Self, OutputError> {
+    /// [`OutputError::Read`] if there is no such file, [`OutputError::Write`] if the table cannot be written.
+    pub fn resume(path: impl AsRef<Path>, rows: &Path) -> Result<Self, OutputError> {
         let path = path.as_ref();
-        // A time read back from text or a checkpoint may differ in the last digit: that is still the same step.
-        let rounding = 1e-9 * last_t_ms.abs();
-        let mut kept = Vec::new();
-        let mut old =
-            csv::Reader::from_path(path).map_err(|error| OutputError::read(path, error))?;
-        for row in old.deserialize::<StepRecord>() {
-            match row {
-                Ok(row) if row.t_ms <= last_t_ms + rounding => kept.push(row),
-                Ok(_) => break,
-                Err(error)
-                    if kept
-                        .last()
-                        .is_none_or(|row| row.t_ms < last_t_ms - rounding) =>
-                {
-                    return Err(OutputError::read(path, error));
-                }
-                Err(_) => break,
-            }
-        }
-        if kept
-            .last()
-            .is_none_or(|row| row.t_ms < last_t_ms - rounding)
-        {
-            return Err(OutputError::read(
-                path,
-                format!("it has no row for t = {last_t_ms} ms, the time to go on from"),
-            ));
-        }
-        let mut table = csv::Writer::from_writer(Vec::new());
-        for row in &kept {
-            table
-                .serialize(row)
-                .map_err(|error| OutputError::write(path, error))?;
-        }
-        let bytes = table
-            .into_inner()
-            .map_err(|error| OutputError::write(path, error))?;
+        let bytes = fs::read(rows).map_err(|error| OutputError::read(rows, error))?;
         super::atomic::write(path, &bytes)?;
         let file = File::options()
             .append(true)
@@ -81,7 +43,7 @@ impl History {
         Ok(Self {
             path: path.into(),
             table: csv::WriterBuilder::new()
-                .has_headers(false)
+                .has_headers(bytes.is_empty())
                 .from_writer(file),
         })
     }
@@ -115,8 +77,6 @@ pub fn read(path: impl AsRef<Path>) -> Result<Vec<StepRecord>, OutputError> {
 
 #[cfg(test)]
 mod tests {
-    use std::fs;
-
     use super::*;
 
     fn record(t_ms: f64) -> StepRecord {
@@ -167,19 +127,21 @@ mod tests {
     }
 
     #[test]
-    fn a_resumed_table_goes_on_after_the_checkpoint_even_if_the_last_row_was_cut() {
-        let path = scratch("resume");
+    fn a_resumed_table_goes_on_after_the_rows_it_is_given() {
+        let (path, rows) = (scratch("resume"), scratch("rows-so-far"));
         let mut history = History::create(&path).unwrap();
-        (1..=5).for_each(|step| history.append(&record(f64::from(step))).unwrap());
+        (1..=3).for_each(|step| history.append(&record(f64::from(step))).unwrap());
+        fs::copy(&path, &rows).unwrap();
+        (4..=5).for_each(|step| history.append(&record(f64::from(step))).unwrap());
         drop(history);
-        let text = fs::read_to_string(&path).unwrap();
-        fs::write(&path, &text[..text.len() - 40]).unwrap();
+        let unbroken = fs::read_to_string(&path).unwrap();
+        // A kill cut the last row off.
+        fs::write(&path, &unbroken[..unbroken.len() - 40]).unwrap();
         assert!(read(&path).unwrap_err().to_string().contains("line: 6"));
-        assert!(History::resume(&path, 5.0).is_err());
-        let mut history = History::resume(&path, 3.0).unwrap();
-        history.append(&record(3.5)).unwrap();
-        let times: Vec<f64> = read(&path).unwrap().iter().map(|row| row.t_ms).collect();
-        assert_eq!(times, [1.0, 2.0, 3.0, 3.5]);
+        let mut history = History::resume(&path, &rows).unwrap();
+        (4..=5).for_each(|step| history.append(&record(f64::from(step))).unwrap());
+        assert_eq!(fs::read_to_string(&path).unwrap(), unbroken);
         fs::remove_file(path).unwrap();
+        fs::remove_file(rows).unwrap();
     }
 }

@@ -7,7 +7,9 @@
 //! closes its file when it is dropped, so drop them all before the MPI session ends.
 
 mod agreement;
+mod arrays;
 mod atomic;
+pub mod checkpoint;
 pub mod diagnosis;
 pub mod error;
 pub mod fields;
@@ -22,9 +24,12 @@ pub mod report;
 pub mod summary;
 pub mod verdict;
 pub mod vtkhdf;
+mod vtkhdf_earlier;
 mod vtkhdf_layout;
 mod vtkhdf_steps;
 
+pub(crate) use agreement::agree;
+pub use arrays::Arrays;
 pub use diagnosis::Diagnosis;
 pub use error::OutputError;
 pub use fields::{ContactFile, ContactSample, FieldSample, SheetFile, SheetPart, ToolsFile};

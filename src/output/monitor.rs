@@ -99,6 +99,27 @@ pub fn failed_banner(place: &str, reason: &str, facts: &[(&str, String)]) -> Str
     banner('#', "FAILED: the run did not finish", &all)
 }
 
+/// The banner of a run that was ended before its end, and can go on: `place` says where, `reason` why, `resume` how.
+/// Ends with a line break.
+pub fn interrupted_banner(
+    place: &str,
+    reason: &str,
+    resume: &str,
+    facts: &[(&str, String)],
+) -> String {
+    let mut all = vec![
+        ("where", place.to_owned()),
+        ("why", reason.to_owned()),
+        ("resume", resume.to_owned()),
+    ];
+    all.extend(facts.iter().cloned());
+    banner(
+        '~',
+        "INTERRUPTED: the run is not finished and can go on",
+        &all,
+    )
+}
+
 fn banner(frame: char, title: &str, facts: &[(&str, String)]) -> String {
     let rule = frame.to_string().repeat(WIDTH);
     let names = facts

@@ -17,8 +17,8 @@ pub enum Status {
     #[serde(rename = "not converged")]
     NotConverged,
     /// Stopped on request (signal, time limit); what came before is valid.
-    #[serde(rename = "stopped")]
-    Stopped,
+    #[serde(rename = "interrupted")]
+    Interrupted,
     /// Something else went wrong: input, files, memory.
     #[serde(rename = "failed")]
     Failed,

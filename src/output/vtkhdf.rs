@@ -15,6 +15,7 @@ use hdf5::{Attribute, Dataset, File};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{AsRaw, Communicator};
 
+use super::vtkhdf_earlier::{Column, EarlierSteps};
 use super::vtkhdf_layout::{Layout, extend, write_values};
 use super::vtkhdf_steps::StepTable;
 use super::{OutputError, agreement::agree};
@@ -232,6 +233,24 @@ impl TimeSeries {
         };
         agree(&self.comm, written.map_err(failed))?;
         self.steps += 1;
+        Ok(())
+    }
+
+    /// Repeats the steps of a closed file with the same arrays, in which row `rows[i]` of every step is this rank's
+    /// point i. The number of ranks may have been another one. Collective; all ranks return the same result.
+    ///
+    /// # Errors
+    /// [`OutputError::Read`] if the file is another one, or as [`TimeSeries::append`].
+    pub fn replay(&mut self, from: &Path, rows: &[usize]) -> Result<(), OutputError> {
+        let failed = |reason| OutputError::read(from, reason);
+        let opened = EarlierSteps::open(from, &self.point_specs);
+        let mut earlier = agree(&self.comm, opened.map_err(failed))?;
+        for step in 0..earlier.times.len() {
+            let read = earlier.read(step, rows);
+            let columns = agree(&self.comm, read.map_err(failed))?;
+            let values: Vec<Values> = columns.iter().map(Column::values).collect();
+            self.append(earlier.times[step], &values)?;
+        }
         Ok(())
     }
 

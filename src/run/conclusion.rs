@@ -8,15 +8,25 @@ use petsc::Session;
 use super::blas::Blas;
 use super::diagnosis::{diagnose, notes};
 use super::judgement::{BALANCE_LIMIT, CONE_LIMIT, PULL_LIMIT, judge};
-use super::{Failure, Outcome, RunError, inputs, unread};
+use super::{Interruption, Outcome, RunError, inputs, unread};
 use crate::case::Case;
-use crate::output::monitor::{failed_banner, finished_banner};
+use crate::output::monitor::{failed_banner, finished_banner, interrupted_banner};
 use crate::output::number;
 use crate::output::summary::{Certificates, Counts, Provenance, Status, Summary, Timing};
 use crate::output::{Diagnosis, Report, StepRecord, VerdictTable};
 
-/// Judges, writes and shows what came out; tells whether the run finished and all verdicts hold.
-/// Collective.
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// It finished, and every verdict holds.
+    Holds,
+    /// It could not be solved to the end, or a verdict does not hold.
+    DoesNotHold,
+    /// It was ended on request, and can go on.
+    Interrupted,
+}
+
+/// Judges, writes and shows what came out. Collective.
 ///
 /// # Errors
 /// If a file cannot be written.
@@ -25,8 +35,9 @@ pub fn conclude(
     mut outcome: Outcome,
     session: &Session,
     comm: &impl Communicator,
-) -> Result<bool, RunError> {
-    let verdicts = judge(case, outcome.recorder.records(), outcome.failure.is_none())?;
+) -> Result<Ending, RunError> {
+    let to_the_end = outcome.failure.is_none() && outcome.interruption.is_none();
+    let verdicts = judge(case, outcome.recorder.records(), to_the_end)?;
     let reference = case.reference_force()?;
     let summary = summarise(case, &outcome, session, comm, verdicts.clone());
     if comm.rank() == 0 {
@@ -39,10 +50,26 @@ pub fn conclude(
         format!("\n{}\n", verdicts.text())
     };
     text.push_str(&unread::warnings()?);
-    match &summary.diagnosis {
-        None => text.push_str(&finished(case, &outcome, &verdicts, &summary.notes)),
-        Some(diagnosis) => text.push_str(&failed(case, diagnosis, &outcome, &summary.notes)),
-    }
+    let (banner, ending) = match (&summary.diagnosis, &outcome.interruption) {
+        (Some(diagnosis), _) => (
+            failed(case, diagnosis, &outcome, &summary.notes),
+            Ending::DoesNotHold,
+        ),
+        (None, Some(stop)) => (
+            interrupted(case, stop, &outcome, &summary.notes),
+            Ending::Interrupted,
+        ),
+        (None, None) => {
+            let holds = verdicts.failures() == 0;
+            let ending = if holds {
+                Ending::Holds
+            } else {
+                Ending::DoesNotHold
+            };
+            (finished(case, &outcome, &verdicts, &summary.notes), ending)
+        }
+    };
+    text.push_str(&banner);
     outcome.recorder.show(&text);
     // The page is made from the files of the run, which all ranks must have closed.
     let (folder, records) = outcome.recorder.close();
@@ -55,7 +82,7 @@ pub fn conclude(
         };
         report.write(&folder)?;
     }
-    Ok(outcome.failure.is_none() && verdicts.failures() == 0)
+    Ok(ending)
 }
 
 fn summarise(
@@ -70,10 +97,10 @@ fn summarise(
     records
         .iter()
         .for_each(|record| certificates.observe(record));
-    let status = if outcome.failure.is_none() {
-        Status::Finished
-    } else {
-        Status::NotConverged
+    let (status, reason) = match (&outcome.failure, &outcome.interruption) {
+        (Some(failure), _) => (Status::NotConverged, Some(failure.sentence())),
+        (None, Some(stop)) => (Status::Interrupted, Some(stop.sentence())),
+        (None, None) => (Status::Finished, None),
     };
     let text = |value: &str| value.to_owned();
     let angles = angles(case, outcome);
@@ -83,7 +110,7 @@ fn summarise(
     };
     Summary {
         status,
-        reason: outcome.failure.as_ref().map(Failure::sentence),
+        reason,
         diagnosis: outcome
             .failure
             .as_ref()
@@ -232,10 +259,30 @@ fn finished(case: &Case, outcome: &Outcome, verdicts: &VerdictTable, notes: &[St
     finished_banner(&title, &facts)
 }
 
+fn interrupted(case: &Case, stop: &Interruption, outcome: &Outcome, notes: &[String]) -> String {
+    let place = format!(
+        "after step {}, t = {:.4} ms, punch down by {:.4} mm",
+        outcome.counts.steps,
+        stop.time,
+        case.loading.motion().depth(stop.time)
+    );
+    let resume = format!(
+        "the same options with -restart, from {}",
+        stop.checkpoint.display()
+    );
+    let mut facts = named("note", notes);
+    facts.extend(effort(case, outcome));
+    interrupted_banner(&place, &stop.cause.sentence(), &resume, &facts)
+}
+
 fn failed(case: &Case, diagnosis: &Diagnosis, outcome: &Outcome, notes: &[String]) -> String {
     let mut facts = named("seen", &diagnosis.observed);
     facts.extend(named("tried", &diagnosis.tried));
     facts.extend(named("try", &diagnosis.remedies));
+    if let Some(path) = outcome.failure.as_ref().and_then(|f| f.checkpoint.as_ref()) {
+        let advice = format!("with what is to be tried, -restart {}", path.display());
+        facts.push(("resume", advice));
+    }
     facts.push((
         "read",
         "docs/it-does-not-converge.md, and report.html beside the results".to_owned(),

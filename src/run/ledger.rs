@@ -38,6 +38,25 @@ impl Ledger {
         self.force
     }
 
+    /// What the ledger remembers: depth (mm), force (N) and work of the punch (mJ).
+    pub(super) fn memory(&self) -> [f64; 3] {
+        let Self {
+            depth,
+            force,
+            external_work,
+        } = *self;
+        [depth, force, external_work]
+    }
+
+    /// Goes on with the memory of another ledger.
+    pub(super) fn recall(&mut self, [depth, force, external_work]: [f64; 3]) {
+        *self = Self {
+            depth,
+            force,
+            external_work,
+        };
+    }
+
     /// The row of an accepted step. The punch's work is the trapezoidal sum of its force over its
     /// way: second order in the step.
     pub fn record(&mut self, effort: &StepEffort, measures: &Measures) -> StepRecord {

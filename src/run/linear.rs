@@ -20,17 +20,23 @@ const PETSC_DEFAULTS: &[(&str, &str)] = &[
 ];
 
 /// The direct solver of the condensed system.
-const CONDENSED_DEFAULTS: &[(&str, &str)] = &[
-    ("condensed_pc_factor_mat_solver_type", "mumps"),
+const PACKAGE: &str = "condensed_pc_factor_mat_solver_type";
+const DEFAULT_PACKAGE: &str = "mumps";
+/// What it needs by default.
+const PACKAGE_DEFAULTS: &[(&str, &str)] = &[
     // METIS: the analysis is done once, so the fill counts.
     ("condensed_mat_mumps_icntl_7", "5"),
+    // No permutation by the entries' sizes: the analysis must not depend on the matrix it happens to see first, which
+    // after a restart is another one. MUMPS would choose none by itself on the benchmark.
+    ("condensed_mat_mumps_icntl_6", "0"),
 ];
 
 /// Whether the option has the value that this program gave it for the linear solves.
 pub(super) fn is_default(name: &str, value: Option<&str>) -> bool {
     PETSC_DEFAULTS
         .iter()
-        .chain(CONDENSED_DEFAULTS)
+        .chain(&[(PACKAGE, DEFAULT_PACKAGE)])
+        .chain(PACKAGE_DEFAULTS)
         .any(|(ours, default)| *ours == name && value == Some(*default))
 }
 
@@ -60,8 +66,11 @@ impl LinearSolve {
             }
             return Ok(Self { condensed: None });
         }
-        for (name, value) in CONDENSED_DEFAULTS {
-            options::set_default(name, value)?;
+        options::set_default(PACKAGE, DEFAULT_PACKAGE)?;
+        if options::get(PACKAGE)?.as_deref() == Some(DEFAULT_PACKAGE) {
+            for (name, value) in PACKAGE_DEFAULTS {
+                options::set_default(name, value)?;
+            }
         }
         let condensed = CondensedSolve::new(Rc::clone(system))?;
         Ok(Self {

@@ -3,6 +3,7 @@
 //! Never: mechanics, or how a file is written.
 
 mod blas;
+mod checkpoint;
 mod conclusion;
 mod defaults;
 mod diagnosis;
@@ -16,34 +17,40 @@ mod recorder;
 mod refusal;
 mod simulation;
 mod solve_watch;
+mod spent;
 mod springback;
 mod static_path;
 mod step_size;
+mod stop_watch;
 mod unread;
 
+use std::path::PathBuf;
 use std::rc::Rc;
 use std::time::Instant;
 
-use mpi::collective::SystemOperation;
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::{Communicator, CommunicatorCollectives};
+use mpi::traits::Communicator;
 use petsc::{CallbackError, TsReason};
 
-pub use conclusion::conclude;
+pub use checkpoint::{RestartError, Resumed};
+pub use conclusion::{Ending, conclude};
 pub use ledger::{Ledger, StepEffort};
 pub use newton::Damping;
 pub use recorder::Recorder;
 pub use refusal::Refusal;
-pub use simulation::Counts;
+pub use simulation::{Counts, Interruption};
 pub use solve_watch::{Course, Flip};
 pub use springback::{Springback, springback};
 pub use static_path::StaticPath;
 pub use step_size::StepControl;
+pub use stop_watch::StopCause;
 
 use crate::case::{self, Case, CaseError};
 use crate::output::{OutputError, number};
 use crate::system::{Problem, System, SystemError};
 use simulation::Simulation;
+use spent::Spent;
+use stop_watch::StopWatch;
 
 /// A run that could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -60,6 +67,12 @@ pub enum RunError {
     /// PETSc.
     #[error("{0}; if a value of one of PETSc's options is to blame: -help lists what each can be")]
     Petsc(#[from] petsc::Error),
+    /// There is nothing to go on from.
+    #[error(transparent)]
+    Restart(#[from] RestartError),
+    /// A signal cannot be caught.
+    #[error("signals cannot be caught: {0}")]
+    Signals(#[from] std::io::Error),
     /// A hook of the time stepper.
     #[error(transparent)]
     Hook(#[from] CallbackError),
@@ -73,15 +86,17 @@ pub struct Outcome {
     pub counts: Counts,
     /// Why it stopped before the end, if it did.
     pub failure: Option<Failure>,
+    /// What ended it on request before its end, if something did.
+    pub interruption: Option<Interruption>,
     /// Angles after the tools vanish at the turning point and at the end, where they could be had.
     pub springbacks: Vec<Springback>,
     /// PETSc's direct solver in use.
     pub factor_solver: Option<String>,
     /// Unknowns over all ranks.
     pub unknowns: usize,
-    /// Processor time of all ranks, s.
+    /// Processor time of all ranks, s; with that of the runs it went on from.
     pub cpu_seconds: f64,
-    /// Time on the clock, s.
+    /// Time on the clock, s; likewise.
     pub wall_seconds: f64,
 }
 
@@ -95,6 +110,8 @@ pub struct Failure {
     pub reason: String,
     /// The solves that were refused, longest step first.
     pub refusals: Vec<Refusal>,
+    /// The state before the step, to go on from with other options.
+    pub checkpoint: Option<PathBuf>,
 }
 
 impl Failure {
@@ -123,34 +140,42 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     if case.output.dry_run {
         return dry_run::describe(case, comm).map(|()| None);
     }
+    let stop_watch = StopWatch::new(&case.resuming, clock)?;
+    let resumed = checkpoint::open(case, comm)?;
+    let spent = Spent::new(clock, resumed.as_ref().map_or([0.0; 2], Resumed::spent));
     let problem = Problem::new(case);
     let motion = case.loading.motion();
     let landmarks = landmarks(case)?;
     let system = Rc::new(System::new(problem, comm.duplicate())?);
     let unknowns = system.unknown_count();
-    let mut recorder = Recorder::new(case, &system)?;
+    if let Some(resumed) = &resumed {
+        resumed.restore_history(&system)?;
+    }
+    let mut recorder = Recorder::new(case, &system, resumed.as_ref())?;
     recorder.show(&blas::report(comm));
-    let simulation = Rc::new(Simulation::new(case, system, recorder, landmarks)?);
-    let finish = simulation.run(case)?;
+    let simulation = Rc::new(Simulation::new(
+        case, system, recorder, landmarks, stop_watch, spent,
+    )?);
+    let finish = simulation.run(case, resumed.as_ref())?;
     // A limit of the user's (-ts_max_steps) is a good end for PETSc, but not for the motion.
-    let short = finish.time < motion.end() * (1.0 - 1e-9);
+    let short = finish.interruption.is_none() && finish.time < motion.end() * (1.0 - 1e-9);
     let failure = (short || finish.reason.is_diverged()).then(|| Failure {
         time: finish.time,
         depth: motion.depth(finish.time),
         reason: why(case, finish.reason, &finish.refusals),
         refusals: finish.refusals,
+        checkpoint: finish.checkpoint,
     });
-    let mine = cpu_time::ProcessTime::now().as_duration().as_secs_f64();
-    let mut cpu_seconds = 0.0;
-    comm.all_reduce_into(&mine, &mut cpu_seconds, SystemOperation::sum());
+    let [cpu_seconds, wall_seconds] = spent.so_far(comm);
     let simulation = Rc::into_inner(simulation)
         .ok_or_else(|| CallbackError::from("the time stepper still holds the simulation"))?;
     Ok(Some(Outcome {
         cpu_seconds,
-        wall_seconds: clock.elapsed().as_secs_f64(),
+        wall_seconds,
         recorder: simulation.into_recorder(),
         counts: finish.counts,
         failure,
+        interruption: finish.interruption,
         springbacks: finish.springbacks,
         factor_solver: finish.factor_solver,
         unknowns,

@@ -1,15 +1,18 @@
 //! Hands what the run knows to the output: monitor, history, fields, figures.
 
 use std::io::stdout;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use mpi::traits::Communicator;
 
+use super::checkpoint::{Resumed, RunState, STATE};
 use crate::case::{Case, ReferenceForce};
+use crate::output::folder::{CONTACT, FIELDS, HISTORY, TOOLS};
 use crate::output::plot::{self, DeformedElement, Shape, View, gather_elements};
 use crate::output::{
-    ContactFile, ContactSample, FieldSample, History, Monitor, OutputDir, OutputError, SheetFile,
-    SheetPart, StepRecord, ToolsFile,
+    Arrays, ContactFile, ContactSample, FieldSample, History, Monitor, OutputDir, OutputError,
+    SheetFile, SheetPart, StepRecord, ToolsFile, agree, checkpoint, history,
 };
 use crate::system::{NodeSample, Problem, System, Tool};
 use crate::tool::PunchMotion;
@@ -39,16 +42,31 @@ impl Recorder {
     ///
     /// # Errors
     /// If a file cannot be made; the same on every rank.
-    pub fn new(case: &Case, system: &System) -> Result<Self, OutputError> {
+    pub fn new(
+        case: &Case,
+        system: &System,
+        resumed: Option<&Resumed>,
+    ) -> Result<Self, OutputError> {
         let comm = system.comm();
+        let rows = resumed.map(|earlier| earlier.rows_so_far(system));
+        let rows = rows.transpose()?;
         let folder = OutputDir::create(&case.output.dir, comm)?;
+        let mine = if comm.rank() == 0 {
+            folder.forget(resumed.map(Resumed::steps))
+        } else {
+            Ok(())
+        };
+        agree(comm, mine)?;
         let local = system.local();
         let problem = local.problem();
-        let history = if comm.rank() == 0 {
-            Some(History::create(folder.history())?)
-        } else {
-            None
+        let mine = match (comm.rank(), resumed) {
+            (0, None) => History::create(folder.history()).map(Some),
+            (0, Some(earlier)) => {
+                History::resume(folder.history(), &earlier.path.join(HISTORY)).map(Some)
+            }
+            _ => Ok(None),
         };
+        let history = agree(comm, mine)?;
         let points: Vec<[f64; 2]> = local
             .contact_points(0.0, &vec![0.0; local.unknown_count()])
             .iter()
@@ -59,7 +77,7 @@ impl Recorder {
             quads: local.element_nodes().to_vec(),
             rank: comm.rank(),
         };
-        Ok(Self {
+        let mut this = Self {
             monitor: Monitor::new(comm.rank(), stdout(), case.loading.motion()),
             history,
             sheet: SheetFile::create(folder.fields(), comm, &part)?,
@@ -75,7 +93,45 @@ impl Recorder {
             every: case.output.every,
             folder,
             records: Vec::new(),
-        })
+        };
+        if let (Some(earlier), Some([nodes, points])) = (resumed, rows) {
+            let earlier = &earlier.path;
+            this.records = agree(comm, history::read(earlier.join(HISTORY)))?;
+            this.sheet.replay(&earlier.join(FIELDS), &nodes)?;
+            this.tools.replay(&earlier.join(TOOLS))?;
+            this.contact.replay(&earlier.join(CONTACT), &points)?;
+        }
+        Ok(this)
+    }
+
+    /// Writes a checkpoint: the state of the run, which is complete on rank 0, and the tables and fields so far. Collective.
+    ///
+    /// # Errors
+    /// If it cannot be written, for example when the disk is full; the same on every rank.
+    pub(super) fn checkpoint(
+        &self,
+        system: &System,
+        state: &RunState,
+    ) -> Result<PathBuf, OutputError> {
+        let step = state.counts.steps;
+        let fill = |to: &Path| {
+            let arrays = Arrays::create(&to.join(STATE))?;
+            state.put(&arrays)?;
+            arrays.close()?;
+            // Every writer has brought its file to the disk after the last step.
+            for name in [HISTORY, FIELDS, TOOLS, CONTACT] {
+                let path = to.join(name);
+                std::fs::copy(self.folder.file(name), &path)
+                    .map_err(|error| OutputError::write(&path, error))?;
+            }
+            Ok(())
+        };
+        let mine = match self.history {
+            Some(_) => checkpoint::write(self.folder.path(), step, fill),
+            None => Ok(()),
+        };
+        agree(system.comm(), mine)?;
+        Ok(checkpoint::path(self.folder.path(), step))
     }
 
     /// Where the files are.
@@ -93,9 +149,16 @@ impl Recorder {
         (self.folder, self.records)
     }
 
-    /// Shows the header of the step lines of a run that goes on from time `t` (ms).
-    pub fn begin(&mut self, t: f64) {
-        self.monitor.header(t);
+    /// Shows from where the run goes on, if it does, and the header of the step lines.
+    pub fn begin(&mut self, resumed: Option<&Resumed>) {
+        if let Some(earlier) = resumed {
+            let (path, steps, t) = (earlier.path.display(), earlier.steps(), earlier.time());
+            self.show(&format!("resumed from {path}: step {steps}, t = {t} ms\n"));
+            for note in &earlier.notes {
+                self.show(&format!("note: {note}\n"));
+            }
+        }
+        self.monitor.header(resumed.map_or(0.0, Resumed::time));
     }
 
     /// Shows a text to the user, once over all ranks.

@@ -41,6 +41,25 @@ impl StepControl {
         control
     }
 
+    /// What the control remembers besides its settings: the step it wants (ms), and steps without growth to come.
+    pub(super) fn memory(&self) -> (f64, usize) {
+        let Self {
+            wanted,
+            calm,
+            planned: _,
+            largest: _,
+            landmarks: _,
+        } = self;
+        (*wanted, *calm)
+    }
+
+    /// Goes on at time `t` (ms) with the memory of another control.
+    pub(super) fn recall(&mut self, t: f64, (wanted, calm): (f64, usize)) {
+        self.wanted = wanted.min(self.largest);
+        self.calm = calm;
+        self.planned = self.clip(t);
+    }
+
     /// The step planned last, ms.
     pub fn planned(&self) -> f64 {
         self.planned

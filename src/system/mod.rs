@@ -16,6 +16,7 @@ mod release;
 mod sample;
 mod seed;
 mod share;
+mod snapshot;
 
 pub use census::Share;
 pub use condensed::CondensedSolve;
@@ -28,3 +29,4 @@ pub use problem::{Factor, NodalValue, Problem, Tool};
 pub use sample::{ContactPointSample, FieldSampler, NodeSample};
 pub use seed::Seed;
 pub use share::{ContactPlace, FailedElement};
+pub use snapshot::Snapshot;

@@ -29,6 +29,34 @@ pub fn scratch(name: &str) -> PathBuf {
     folder
 }
 
+/// The program on some ranks with these words, not started; without a limit of time.
+pub fn command(ranks: usize, words: &[&str]) -> Command {
+    let program = env!("CARGO_BIN_EXE_ssnp155");
+    let mut command = if ranks == 1 {
+        Command::new(program)
+    } else {
+        let mut command = Command::new("mpirun");
+        command.args(["-q", "--oversubscribe", "-n", &ranks.to_string(), program]);
+        command
+    };
+    command.args(words);
+    for_few_cores(&mut command);
+    command
+}
+
+/// Several ranks on few cores, also for root.
+fn for_few_cores(command: &mut Command) -> &mut Command {
+    command
+        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
+        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
+        .env("OMPI_MCA_hwloc_base_binding_policy", "none")
+        .env("OMPI_MCA_btl_vader_single_copy_mechanism", "none")
+        // More ranks than cores must not wait in a busy loop for those that have none.
+        .env("OMPI_MCA_mpi_yield_when_idle", "1")
+        .env("OPENBLAS_NUM_THREADS", "1")
+        .env("OMP_NUM_THREADS", "1")
+}
+
 /// Runs the program with these words, by mpirun if there is more than one rank. A run that takes longer than `seconds`
 /// is ended, with code 110 by mpirun or 124 otherwise.
 pub fn run(ranks: usize, seconds: u32, words: &[&str]) -> Ended {
@@ -58,15 +86,7 @@ pub fn run_in(
         ]);
     }
     command.arg(env!("CARGO_BIN_EXE_ssnp155")).args(words);
-    command
-        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
-        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
-        .env("OMPI_MCA_hwloc_base_binding_policy", "none")
-        .env("OMPI_MCA_btl_vader_single_copy_mechanism", "none")
-        // More ranks than cores must not wait in a busy loop for those that have none.
-        .env("OMPI_MCA_mpi_yield_when_idle", "1")
-        .env("OPENBLAS_NUM_THREADS", "1")
-        .env("OMP_NUM_THREADS", "1")
+    for_few_cores(&mut command)
         .envs(environment)
         .current_dir(folder);
     let output = command.output().expect("timeout and mpirun are needed");
@@ -105,4 +125,35 @@ pub fn history(folder: &Path) -> BTreeMap<String, Vec<f64>> {
 pub fn summary(folder: &Path) -> serde_json::Value {
     let text = std::fs::read_to_string(folder.join("summary.json")).unwrap();
     serde_json::from_str(&text).unwrap()
+}
+
+/// Everything in a run's field files that may not differ: all arrays by name, without the times of writing.
+pub fn fields(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for name in ["fields.vtkhdf", "contact.vtkhdf", "tools.vtkhdf"] {
+        let file = hdf5::File::open(folder.join(name)).unwrap();
+        collect(&file.group("VTKHDF").unwrap(), name, &mut found);
+    }
+    found
+}
+
+fn collect(group: &hdf5::Group, name: &str, found: &mut BTreeMap<String, Vec<u8>>) {
+    for dataset in group.datasets().unwrap() {
+        let bytes = match dataset.dtype().unwrap().size() {
+            8 => dataset.read_raw::<f64>().map_or_else(
+                |_| numbers(&dataset.read_raw::<i64>().unwrap(), i64::to_ne_bytes),
+                |values| numbers(&values, f64::to_ne_bytes),
+            ),
+            4 => numbers(&dataset.read_raw::<i32>().unwrap(), i32::to_ne_bytes),
+            _ => dataset.read_raw::<u8>().unwrap(),
+        };
+        found.insert(format!("{name}:{}", dataset.name()), bytes);
+    }
+    for group in group.groups().unwrap() {
+        collect(&group, name, found);
+    }
+}
+
+fn numbers<T: Copy, const N: usize>(values: &[T], bytes: fn(T) -> [u8; N]) -> Vec<u8> {
+    values.iter().flat_map(|&value| bytes(value)).collect()
 }

@@ -10,7 +10,7 @@ use petsc_sys as sys;
 
 use super::{LineSearchInfo, SnesRef, trampolines};
 use crate::{
-    CallbackError, Evaluation, Matrix, MatrixRef, SnesReason, VectorRef,
+    CallbackError, Evaluation, Matrix, MatrixRef, SnesReason, Vector, VectorRef,
     callback::{Slot, table},
     error::{Result, check},
 };
@@ -38,6 +38,8 @@ pub(crate) struct SnesTable {
     /// How many bounds this rank has, if any are set.
     pub(super) bounds_size: Cell<Option<usize>>,
     pub(crate) running: Cell<bool>,
+    /// What every solve has to answer at once while a state is put into the time integration.
+    pub(crate) placed: RefCell<Option<Vector>>,
     pub(crate) shell_setup: Slot<dyn Fn(&SnesRef, &MatrixRef) -> Evaluation>,
     pub(crate) shell_apply: Slot<dyn Fn(&VectorRef, &mut VectorRef) -> Done>,
 }
@@ -122,9 +124,20 @@ impl SnesRef {
         guess: impl Fn(&mut VectorRef) -> Done + 'static,
     ) -> Result<()> {
         self.table()?.initial_guess.set(Rc::new(guess));
+        self.install_initial_guess()
+    }
+
+    fn install_initial_guess(&mut self) -> Result<()> {
         let (function, none) = (Some(trampolines::on_initial_guess as _), ptr::null_mut());
         // SAFETY: a live solver; the function finds its closure by itself.
         check(unsafe { sys::SNESSetComputeInitialGuess(self.raw(), function, none) })
+    }
+
+    /// From here on every solve answers `answer` at once; with none, solves are solves again.
+    pub(crate) fn answer_at_once(&mut self, answer: Option<Vector>) -> Result<()> {
+        self.table()?.placed.replace(answer);
+        self.install_initial_guess()?;
+        self.install_convergence_test()
     }
 
     /// Sets a closure called at the start of each iteration, before the tangent matrix is made, with
@@ -175,7 +188,9 @@ impl SnesRef {
     }
 
     pub(super) fn install_convergence_test(&mut self) -> Result<()> {
-        if !self.table()?.convergence.is_set() || self.option_is_given("snes_convergence_test")? {
+        let table = self.table()?;
+        let wanted = table.convergence.is_set() || table.placed.borrow().is_some();
+        if !wanted || self.option_is_given("snes_convergence_test")? {
             return Ok(());
         }
         let (function, none) = (Some(trampolines::on_convergence as _), ptr::null_mut());

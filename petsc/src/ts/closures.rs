@@ -35,6 +35,8 @@ pub(super) struct TsTable {
     pub(super) post_step: Slot<dyn Fn(&mut TsRef) -> Done>,
     pub(super) monitor: Slot<dyn Fn(&TsRef, i32, f64, &VectorRef) -> Done>,
     pub(super) running: Cell<bool>,
+    /// Whether a state is being put into the method: its closures are not called then.
+    pub(super) placing: Cell<bool>,
     /// Whether the method has seen the past of the present solution; if not, the next step is a start.
     pub(super) has_history: Cell<bool>,
     /// The number of the last step that was a start.

@@ -22,6 +22,7 @@
 //!   [`TsRef::converged_reason`] first.
 
 mod alpha;
+mod alpha_state;
 mod closures;
 mod control;
 mod trampolines;
@@ -39,6 +40,7 @@ use crate::{
 };
 
 pub use alpha::AlphaParameters;
+pub use alpha_state::Alpha2State;
 pub use control::ExactFinalTime;
 
 petsc_object! {
@@ -173,6 +175,17 @@ impl TsRef {
         // SAFETY: live objects; PETSc counts its references to the vectors.
         check(unsafe { sys::TS2SetSolution(self.raw(), u.raw(), v.raw()) })?;
         self.restart_step()
+    }
+
+    /// Writes into PETSc's vectors without calling it a jump.
+    fn replace_solution2(&mut self, u: &VectorRef, v: &VectorRef) -> Result<()> {
+        let (own_u, own_v) = self.solution2()?;
+        let (own_u, own_v) = (own_u.raw(), own_v.raw());
+        // SAFETY: as in `set_solution`; the two are different vectors.
+        unsafe {
+            VectorRef::from_raw_mut(own_u)?.copy_from(u)?;
+            VectorRef::from_raw_mut(own_v)?.copy_from(v)
+        }
     }
 
     /// The solution at the present time.

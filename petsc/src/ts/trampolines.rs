@@ -53,6 +53,9 @@ pub(super) unsafe extern "C" fn on_residual2(
             );
             (ts_table(ts)?, u, v, a, VectorRef::from_raw_mut(f)?)
         };
+        if table.placing.get() {
+            return Ok(f.set_all(0.0)?);
+        }
         table.residual2.get()?(t, u, v, a, f)
     });
     // SAFETY: as above; the closure has given `f` back.
@@ -149,7 +152,7 @@ pub(super) unsafe extern "C" fn on_pre_step(ts: sys::TS) -> c_int {
         // SAFETY: PETSc's live object, which waits for this function.
         let (table, ts) = unsafe { for_hook(ts) }?;
         ts.restore_params(&table)?;
-        if table.pre_step.is_set() {
+        if table.pre_step.is_set() && !table.placing.get() {
             table.pre_step.get()?(ts)?;
         }
         Ok(ts.begin_step(&table)?)
@@ -160,6 +163,9 @@ pub(super) unsafe extern "C" fn on_pre_stage(ts: sys::TS, time: f64) -> c_int {
     run(ts.cast(), || {
         // SAFETY: PETSc's live object, which waits for this function.
         let (table, ts) = unsafe { for_hook(ts) }?;
+        if table.placing.get() {
+            return Ok(());
+        }
         table.pre_stage.get()?(ts, time)
     })
 }
@@ -177,6 +183,9 @@ pub(super) unsafe extern "C" fn on_post_stage(
             let u = *solutions.add(usize::try_from(stage).unwrap_or(0));
             (table, ts, VectorRef::from_raw(u)?)
         };
+        if table.placing.get() {
+            return Ok(());
+        }
         table.post_stage.get()?(ts, time, u)
     })
 }
@@ -193,6 +202,9 @@ pub(super) unsafe extern "C" fn on_stage_check(
             let (table, ts) = for_hook(ts)?;
             (table, ts, VectorRef::from_raw(u)?)
         };
+        if table.placing.get() {
+            return Ok(());
+        }
         table.stage_check.get()?(ts, time, u)
     });
     let verdict = match outcome {
@@ -209,6 +221,9 @@ pub(super) unsafe extern "C" fn on_post_step(ts: sys::TS) -> c_int {
     run(ts.cast(), || {
         // SAFETY: PETSc's live object, which waits for this function.
         let (table, ts) = unsafe { for_hook(ts) }?;
+        if table.placing.get() {
+            return Ok(());
+        }
         table.post_step.get()?(ts)
     })
 }
@@ -224,6 +239,9 @@ pub(super) unsafe extern "C" fn on_monitor(
         // SAFETY: PETSc's live objects.
         let (table, ts, u) =
             unsafe { (ts_table(ts)?, TsRef::from_raw(ts)?, VectorRef::from_raw(u)?) };
+        if table.placing.get() {
+            return Ok(());
+        }
         table.monitor.get()?(ts, step, time, u)
     })
 }

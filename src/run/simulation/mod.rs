@@ -1,25 +1,34 @@
 //! One simulation: PETSc's time stepper with our residual, and what happens around each step.
 
+mod resume;
 mod solve;
 
 use std::cell::{Cell, RefCell};
+use std::path::PathBuf;
 use std::rc::Rc;
 
-use petsc::{CallbackError, Matrix, SnesReason, SnesRef, Ts, TsReason, TsRef, Vector, VectorRef};
+use petsc::{
+    Alpha2State, CallbackError, Matrix, SnesReason, SnesRef, Ts, TsReason, TsRef, Vector, VectorRef,
+};
 
+use super::checkpoint::{Resumed, RunState, hardening_checksum};
 use super::ledger::{Ledger, StepEffort};
 use super::linear::LinearSolve;
 use super::newton::{Damping, TangentInertia};
 use super::recorder::Recorder;
 use super::refusal::Refusal;
 use super::solve_watch::SolveWatch;
+use super::spent::Spent;
 use super::springback::{Springback, springback};
 use super::step_size::StepControl;
+use super::stop_watch::StopWatch;
 use super::{RunError, defaults};
 use crate::case::{Case, Dynamics};
 use crate::output::StepRecord;
 use crate::system::{FieldSampler, System};
 use crate::tool::PunchMotion;
+
+pub use resume::Interruption;
 
 /// What the hooks of the time stepper share.
 pub(super) struct Simulation {
@@ -56,6 +65,13 @@ pub(super) struct Simulation {
     refusals: RefCell<Vec<Refusal>>,
     counts: Cell<Counts>,
     springbacks: RefCell<Vec<Springback>>,
+    /// Velocity and acceleration; none in statics.
+    alpha: RefCell<Option<Alpha2State>>,
+    stop_watch: RefCell<StopWatch>,
+    spent: Spent,
+    /// What a checkpoint says about the case it belongs to.
+    identity: RunState,
+    interruption: RefCell<Option<Interruption>>,
 }
 
 /// Work done over the run.
@@ -77,6 +93,9 @@ pub(super) struct Finish {
     pub refusals: Vec<Refusal>,
     pub time: f64,
     pub springbacks: Vec<Springback>,
+    pub interruption: Option<Interruption>,
+    /// The state before a step that could not be solved.
+    pub checkpoint: Option<PathBuf>,
     /// PETSc's direct solver in use.
     pub factor_solver: Option<String>,
 }
@@ -87,6 +106,8 @@ impl Simulation {
         system: Rc<System>,
         recorder: Recorder,
         landmarks: Vec<f64>,
+        stop_watch: StopWatch,
+        spent: Spent,
     ) -> Result<Self, RunError> {
         let stepping = &case.stepping;
         let accepted = system.initial_unknowns()?;
@@ -119,12 +140,31 @@ impl Simulation {
             refusals: RefCell::default(),
             counts: Cell::default(),
             springbacks: RefCell::default(),
+            alpha: RefCell::new(None),
+            stop_watch: RefCell::new(stop_watch),
+            spent,
+            identity: RunState {
+                options: case
+                    .options()
+                    .into_iter()
+                    .map(|(name, value)| (name.to_owned(), value))
+                    .collect(),
+                hardening: hardening_checksum(case),
+                revision: env!("SSNP155_REVISION").to_owned(),
+                ..RunState::default()
+            },
+            interruption: RefCell::new(None),
             system,
         })
     }
 
-    /// Runs to the end of the motion or until a step cannot be solved. Collective.
-    pub(super) fn run(self: &Rc<Self>, case: &Case) -> Result<Finish, RunError> {
+    /// Runs from the start or from a checkpoint to the end of the motion, until a step cannot be solved, or until it is
+    /// asked to end. Collective.
+    pub(super) fn run(
+        self: &Rc<Self>,
+        case: &Case,
+        resumed: Option<&Resumed>,
+    ) -> Result<Finish, RunError> {
         defaults::set(case)?;
         let mut ts = Ts::new(self.system.comm())?;
         let linear = LinearSolve::chosen(&self.system)?;
@@ -135,11 +175,24 @@ impl Simulation {
         linear.install(ts.snes_mut()?)?;
         ts.set_from_options()?;
         ts.snes_mut()?.set_variable_bounds(&lower, &upper)?;
-        ts.set_time_step(self.control.borrow().planned())?;
         ts.set_max_time(self.control.borrow().end())?;
-        self.write_fields(0.0, &self.accepted.borrow(), None)?;
-        self.recorder.borrow_mut().begin(self.accepted_time.get());
+        if case.loading.dynamics == Dynamics::Slow {
+            let at_rest = self.system.vector()?;
+            self.alpha.replace(Some(Alpha2State::new(&ts, &at_rest)?));
+        }
+        match resumed {
+            Some(resumed) => self.put_back(&mut ts, resumed)?,
+            None => self.write_fields(0.0, &self.accepted.borrow(), None)?,
+        }
+        ts.set_time_step(self.control.borrow().planned())?;
+        self.recorder.borrow_mut().begin(resumed);
         let reason = self.solve(&mut ts)?;
+        let given_up = reason.is_diverged() && self.counts.get().steps > 0;
+        let checkpoint = if given_up && self.stop_watch.borrow().saves_regularly() {
+            Some(self.save()?)
+        } else {
+            None
+        };
         let factor_solver = linear.factor_solver(ts.snes()?)?;
         Ok(Finish {
             reason,
@@ -147,6 +200,8 @@ impl Simulation {
             refusals: self.refusals.take(),
             time: self.accepted_time.get(),
             springbacks: self.springbacks.take(),
+            interruption: self.interruption.take(),
+            checkpoint,
             factor_solver,
         })
     }
@@ -277,6 +332,9 @@ impl Simulation {
         if ts.converged_reason()?.is_diverged() {
             return Ok(());
         }
+        if let Some(alpha) = &mut *self.alpha.borrow_mut() {
+            alpha.accepted(ts)?;
+        }
         let t = ts.time()?;
         let dt = t - self.accepted_time.get();
         let record = self.accept(ts, t, dt)?;
@@ -302,6 +360,7 @@ impl Simulation {
             ts.set_converged_reason(TsReason::ConvergedTime)?;
         } else {
             ts.set_time_step(next)?;
+            self.save_or_stop(ts)?;
         }
         Ok(())
     }

@@ -49,6 +49,9 @@ impl Simulation {
     }
 
     pub(super) fn before_solve(&self, ts: &mut TsRef, t: f64) -> Result<(), CallbackError> {
+        if let Some(alpha) = &mut *self.alpha.borrow_mut() {
+            alpha.attempt(ts)?;
+        }
         self.attempted_time.set(t);
         let dt = ts.time_step()?;
         self.attempted.set(dt);

@@ -96,7 +96,8 @@ function header() {
     + `${model.unload_fraction > 0 ? `${show(100 * model.unload_fraction)} % of it back` : "no way back"}; ${model.elements[0]} × ${model.elements[1]} quadratic elements`
     + `${compared || !done ? "" : `. There are no reference values for this case${differs.length ? "" : ""}: only the certificate is judged`}.`;
   const status = document.getElementById("status");
-  const [kind, text] = !done ? ["bad", `FAILED: the run did not finish${summary.status === "stopped" ? " (stopped)" : ""}`]
+  const [kind, text] = summary.status === "interrupted" ? ["warn", `Interrupted: ${summary.reason}`]
+    : !done ? ["bad", "FAILED: the run did not finish"]
     : failing ? ["warn", `Finished, but ${failing} verdict${failing > 1 ? "s do" : " does"} not hold`] : ["good", `Finished: all ${summary.verdicts.length} verdicts hold`];
   status.className = `status ${kind}`; status.textContent = text;
   document.title = `ssnp155: ${text.toLowerCase()}`;
