@@ -157,8 +157,7 @@ fn an_element_that_turns_over_is_named() {
 /// Where contact points are too far apart the punch goes through the sheet: no verdict says why, so the banner does.
 #[test]
 fn a_punch_that_passes_between_the_points_is_told() {
-    // One point on one edge is 30 mm from the middle, beside the punch.
-    for (elements, points, passes) in [("1", "1", true), ("1", "6", false), ("2", "6", false)] {
+    for (elements, points) in [("1", "6"), ("2", "6"), ("3", "1")] {
         let folder = scratch(&format!("failure-passes-{elements}-{points}"));
         let mut words = vec!["-output_dir", folder.to_str().unwrap()];
         words.extend([
@@ -178,7 +177,6 @@ fn a_punch_that_passes_between_the_points_is_told() {
             note.contains("between its contact points") && note.contains("use -sheet_nx"),
             "{note}"
         );
-        assert_eq!(note.contains("passes through the sheet"), passes, "{note}");
         assert!(ended.stdout.contains("=  note     "), "{}", ended.stdout);
     }
 }

@@ -285,29 +285,11 @@ pub(super) fn notes(case: &Case, records: &[StepRecord]) -> Vec<String> {
             sizes.nx
         )
     };
-    let unmet = records
-        .iter()
-        .filter(|record| {
-            record.stroke_mm > limit && record.force_N.abs() < 0.02 * hinge_force(case)
-        })
-        .count();
-    let passes = if 2 * unmet > records.len() {
-        " The punch meets next to nothing: it passes through the sheet between the points."
-    } else {
-        ""
-    };
     vec![format!(
         "A tool goes into the sheet between its contact points: from a stroke of {:.2} mm on, by up to {} mm; the limit is \
-         {} mm. The {points} stand {spacing:.2} mm apart; {remedy}.{passes}",
+         {} mm. The {points} stand {spacing:.2} mm apart; {remedy}.",
         first.stroke_mm,
         number(deepest),
         number(limit)
     )]
-}
-
-/// The force (N) that bends the sheet to a plastic hinge between punch and shoulder: what a punch that meets it feels.
-fn hinge_force(case: &Case) -> f64 {
-    let (sheet, arm) = (&case.sheet, case.tools.die_edge());
-    let moment = 0.25 * case.material.hardening.initial() * sheet.width * sheet.thickness.powi(2);
-    2.0 * moment / arm
 }
