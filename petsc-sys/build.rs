@@ -28,6 +28,8 @@ const FUNCTIONS: &[&str] = &[
     "Mat(Copy|Scale|Shift|AXPY|GetDiagonal|CreateVecs|GetFactor|LUFactorSymbolic|LUFactorNumeric|Solve)",
     "Mat(FactorInfoInitialize|FactorGetSolverType|FactorGetError|FactorClearError)",
     "MatCreateShell|MatShellSetOperation",
+    "Mat(FactorSetSchurIS|FactorCreateSchurComplement|SetOptionsPrefixFactor)",
+    "Mat(CholeskyFactorSymbolic|CholeskyFactorNumeric|DenseGetArrayRead|DenseRestoreArrayRead|DenseGetLDA)",
     "MatMumps(SetIcntl|GetIcntl|GetInfo|GetInfog|GetRinfog|SetCntl)",
     // Linear solvers.
     "KSP(Create|Destroy|SetOperators|SetFromOptions|SetOptionsPrefix|SetType|GetPC|SetUp|Solve|Reset)",

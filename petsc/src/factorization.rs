@@ -7,8 +7,8 @@ use petsc_sys as sys;
 use crate::{
     error::{Error, Result, check},
     matrix::MatrixRef,
-    session::{Keep, keep, mpi_has_ended},
-    vector::VectorRef,
+    session::{Keep, c_string, keep, mpi_has_ended},
+    vector::{VectorRef, index},
 };
 
 /// How a numeric factorisation ended.
@@ -26,12 +26,24 @@ pub enum FactorStatus {
     Other,
 }
 
-/// An LU factorisation by MUMPS of matrices that share one pattern.
+/// What a factorisation may take for granted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FactorKind {
+    /// Nothing: L U.
+    General,
+    /// The matrix is symmetric, definite or not: L D L^T. Only its upper triangle is read.
+    Symmetric,
+}
+
+/// A factorisation by MUMPS of matrices that share one pattern.
 ///
 /// The symbolic analysis is made once; [`Factorization::factor`] repeats the numeric part only.
-/// MUMPS reads its options (`-mat_mumps_icntl_…`) at construction.
+/// MUMPS reads its options (`-mat_mumps_icntl_…`, behind the prefix given) at construction.
 pub struct Factorization {
     raw: sys::Mat,
+    kind: FactorKind,
+    /// Unknowns that are not eliminated.
+    kept: usize,
     status: Cell<Option<FactorStatus>>,
     _keep: Keep,
 }
@@ -41,34 +53,85 @@ impl Factorization {
     ///
     /// # Errors
     /// If MUMPS is missing or its analysis fails.
-    pub fn new(matrix: &MatrixRef) -> Result<Self> {
+    pub fn new(matrix: &MatrixRef, kind: FactorKind) -> Result<Self> {
+        let this = Self::begin(matrix, kind)?;
+        this.analyse(matrix)?;
+        Ok(this)
+    }
+
+    /// Analyses the pattern of a matrix on one rank, of which the unknowns `kept` are not eliminated: what
+    /// is left for them is [`Factorization::schur_complement`], and [`Factorization::solve`] solves for the
+    /// others with these held at zero.
+    ///
+    /// # Errors
+    /// If MUMPS is missing, the matrix is distributed, or the analysis fails.
+    pub fn keeping(
+        matrix: &MatrixRef,
+        kind: FactorKind,
+        kept: &[i32],
+        prefix: &str,
+    ) -> Result<Self> {
+        let prefix = c_string(prefix)?;
+        // SAFETY: a live matrix and a C string, which PETSc copies.
+        check(unsafe { sys::MatSetOptionsPrefixFactor(matrix.raw(), prefix.as_ptr()) })?;
+        let mut this = Self::begin(matrix, kind)?;
+        this.kept = kept.len();
+        let mut set = ptr::null_mut();
+        // SAFETY: a live factor; the index set copies the array, is referred to by nobody after the call
+        // that copies it in turn, and is destroyed once.
+        unsafe {
+            check(sys::ISCreateGeneral(
+                mpi_sys::RSMPI_COMM_SELF,
+                index(kept.len())?,
+                kept.as_ptr(),
+                sys::PETSC_COPY_VALUES,
+                &mut set,
+            ))?;
+            let taken = check(sys::MatFactorSetSchurIS(this.raw, set));
+            check(sys::ISDestroy(&mut set))?;
+            taken?;
+        }
+        this.analyse(matrix)?;
+        // Solves are those of the eliminated unknowns alone.
+        // SAFETY: a live MUMPS factor.
+        check(unsafe { sys::MatMumpsSetIcntl(this.raw, 26, 0) })?;
+        Ok(this)
+    }
+
+    fn begin(matrix: &MatrixRef, kind: FactorKind) -> Result<Self> {
         let mut this = Factorization {
             raw: ptr::null_mut(),
+            kind,
+            kept: 0,
             status: Cell::new(None),
             _keep: keep()?,
         };
-        let (package, none) = (sys::MATSOLVERMUMPS.as_ptr(), ptr::null_mut());
-        // SAFETY: a live matrix; PETSc writes the new object, which `this` owns; null orderings
-        // leave the ordering to MUMPS, a null info means defaults.
-        unsafe {
-            check(sys::MatGetFactor(
-                matrix.raw(),
-                package,
-                sys::MAT_FACTOR_LU,
-                &mut this.raw,
-            ))?;
-            if this.raw.is_null() {
-                return Err(Error::usage("PETSc was built without MUMPS"));
-            }
-            check(sys::MatLUFactorSymbolic(
-                this.raw,
-                matrix.raw(),
-                none,
-                none,
-                ptr::null(),
-            ))?;
+        let package = sys::MATSOLVERMUMPS.as_ptr();
+        let petsc_kind = match kind {
+            FactorKind::General => sys::MAT_FACTOR_LU,
+            FactorKind::Symmetric => sys::MAT_FACTOR_CHOLESKY,
+        };
+        // SAFETY: a live matrix; PETSc writes the new object, which `this` owns.
+        check(unsafe { sys::MatGetFactor(matrix.raw(), package, petsc_kind, &mut this.raw) })?;
+        if this.raw.is_null() {
+            return Err(Error::usage("PETSc was built without MUMPS"));
         }
         Ok(this)
+    }
+
+    fn analyse(&self, matrix: &MatrixRef) -> Result<()> {
+        let (raw, none, defaults) = (matrix.raw(), ptr::null_mut(), ptr::null());
+        // SAFETY: live objects; null orderings leave the ordering to MUMPS, a null info means defaults.
+        check(unsafe {
+            match self.kind {
+                FactorKind::General => {
+                    sys::MatLUFactorSymbolic(self.raw, raw, none, none, defaults)
+                }
+                FactorKind::Symmetric => {
+                    sys::MatCholeskyFactorSymbolic(self.raw, raw, none, defaults)
+                }
+            }
+        })
     }
 
     /// Factorises a matrix of the pattern given at construction. Collective.
@@ -77,11 +140,15 @@ impl Factorization {
     /// If the matrix does not fit; a singular matrix is a [`FactorStatus`].
     pub fn factor(&self, matrix: &MatrixRef) -> Result<FactorStatus> {
         self.status.set(None);
+        let (raw, defaults) = (matrix.raw(), ptr::null());
         let mut error = sys::MAT_FACTOR_NOERROR;
         // SAFETY: live objects; PETSc checks the sizes; one value to write.
         unsafe {
             check(sys::MatFactorClearError(self.raw))?;
-            check(sys::MatLUFactorNumeric(self.raw, matrix.raw(), ptr::null()))?;
+            check(match self.kind {
+                FactorKind::General => sys::MatLUFactorNumeric(self.raw, raw, defaults),
+                FactorKind::Symmetric => sys::MatCholeskyFactorNumeric(self.raw, raw, defaults),
+            })?;
             check(sys::MatFactorGetError(self.raw, &mut error))?;
         }
         let status = match error {
@@ -93,6 +160,37 @@ impl Factorization {
         };
         self.status.set(Some(status));
         Ok(status)
+    }
+
+    /// What the eliminated unknowns leave for the kept ones, row by row in the order they were given.
+    ///
+    /// # Errors
+    /// If there are no usable factors or the length of `out` is not the square of the kept unknowns.
+    pub fn schur_complement(&self, out: &mut [f64]) -> Result<()> {
+        if self.status.get() != Some(FactorStatus::Ready) || out.len() != self.kept * self.kept {
+            return Err(Error::usage("no Schur complement of this size"));
+        }
+        let (mut matrix, mut data, mut stride) = (ptr::null_mut(), ptr::null(), 0);
+        // SAFETY: a live MUMPS factor; PETSc writes a new dense matrix of kept x kept numbers, stored by
+        // columns, which is destroyed here; its array is read between loan and return.
+        unsafe {
+            let none = ptr::null_mut();
+            check(sys::MatFactorCreateSchurComplement(
+                self.raw,
+                &mut matrix,
+                none,
+            ))?;
+            check(sys::MatDenseGetLDA(matrix, &mut stride))?;
+            check(sys::MatDenseGetArrayRead(matrix, &mut data))?;
+            let stride = usize::try_from(stride).unwrap_or(self.kept);
+            for (i, row) in out.chunks_exact_mut(self.kept.max(1)).enumerate() {
+                for (j, value) in row.iter_mut().enumerate() {
+                    *value = *data.add(j * stride + i);
+                }
+            }
+            check(sys::MatDenseRestoreArrayRead(matrix, &mut data))?;
+            check(sys::MatDestroy(&mut matrix))
+        }
     }
 
     /// Solves `A x = b` with the last factors. Collective.

@@ -45,7 +45,7 @@ pub mod log;
 pub mod options;
 
 pub use error::{CallbackError, Error, Evaluation, Failure, Result};
-pub use factorization::{FactorStatus, Factorization};
+pub use factorization::{FactorKind, FactorStatus, Factorization};
 pub use guard::{ReadGuard, WriteGuard};
 pub use ksp::{Ksp, KspRef};
 pub use matrix::{Matrix, MatrixOption, MatrixRef};

@@ -12,7 +12,8 @@ use std::{
 use mpi::topology::SimpleCommunicator;
 use obstacle::{Obstacle, touches};
 use petsc::{
-    FactorStatus, Factorization, Failure, MatrixOption, SnesReason, SnesRef, Vector, options,
+    FactorKind, FactorStatus, Factorization, Failure, MatrixOption, SnesReason, SnesRef, Vector,
+    options,
 };
 
 fn main() {
@@ -231,7 +232,7 @@ fn one_symbolic_factorisation(comm: &SimpleCommunicator) {
         let mut kept = kept.borrow_mut();
         if kept.is_none() {
             symbolic_count.set(symbolic_count.get() + 1);
-            *kept = Some(Factorization::new(&matrix)?);
+            *kept = Some(Factorization::new(&matrix, FactorKind::General)?);
         }
         numeric_count.set(numeric_count.get() + 1);
         match kept

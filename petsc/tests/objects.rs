@@ -8,7 +8,7 @@ use mpi::{
     topology::{Communicator, SimpleCommunicator},
     traits::CommunicatorCollectives,
 };
-use petsc::{Error, FactorStatus, Factorization, Ksp, Matrix, Scatter, log, options};
+use petsc::{Error, FactorKind, FactorStatus, Factorization, Ksp, Matrix, Scatter, log, options};
 
 fn main() {
     common::run(&[
@@ -253,7 +253,7 @@ fn zero_rows_columns(comm: &SimpleCommunicator) {
 fn factorization(comm: &SimpleCommunicator) {
     let (mut matrix, values) = line(comm, 1.0);
     matrix.set_values_coo(&values).unwrap();
-    let factors = Factorization::new(&matrix).unwrap();
+    let factors = Factorization::new(&matrix, FactorKind::General).unwrap();
     let x = vector(comm, 3, |i| f64::from(i).sin());
     let (mut b, mut found) = (x.duplicate().unwrap(), x.duplicate().unwrap());
     assert!(factors.solve(&b, &mut found).is_err()); // no numbers yet
@@ -272,7 +272,7 @@ fn factorization(comm: &SimpleCommunicator) {
 fn singular(comm: &SimpleCommunicator) {
     let (mut matrix, values) = line(comm, 1.0);
     matrix.set_values_coo(&values).unwrap();
-    let factors = Factorization::new(&matrix).unwrap();
+    let factors = Factorization::new(&matrix, FactorKind::General).unwrap();
     matrix.set_values_coo(&vec![0.0; values.len()]).unwrap();
     assert_eq!(
         factors.factor(&matrix).unwrap(),

@@ -1,19 +1,26 @@
 //! The linear solve of a Newton step on the reduced set, without its contact unknowns.
 //!
 //! The condensed matrix has the same pattern for the whole run, so a direct solver analyses it once.
-//! PETSc's options for its solver begin with `-condensed_`.
+//! PETSc's options for its solver begin with `-condensed_`. On more than one rank the system is solved by
+//! [substructures](super::substructures) unless the options choose otherwise.
 
 use std::cell::RefCell;
 use std::rc::Rc;
 
 use mpi::traits::Communicator;
-use petsc::{Ksp, Matrix, Scatter, Vector, VectorRef};
+use petsc::{Ksp, Matrix, Scatter, Vector, VectorRef, options};
 
 use super::System;
-use super::elimination::Elimination;
+use super::elimination::{CondensedPattern, Elimination};
+use super::substructures::Substructures;
 
 /// Prefix of the options of the condensed system's solver.
-const PREFIX: &str = "condensed_";
+pub(super) const PREFIX: &str = "condensed_";
+
+/// Options that choose a solver of the whole condensed system.
+const CHOICES: &[&str] = &["condensed_ksp_type", "condensed_pc_type"];
+/// The package of that solver, and the only one that substructures work with.
+const PACKAGE: (&str, &str) = ("condensed_pc_factor_mat_solver_type", "mumps");
 
 /// Solves with the last Jacobian of a [`System`] and an active set.
 pub struct CondensedSolve {
@@ -25,13 +32,20 @@ pub struct CondensedSolve {
 /// What changes from solve to solve, allocated once.
 struct Parts {
     elimination: Elimination,
-    matrix: Matrix,
-    solver: Ksp,
+    solver: Solver,
     right_side: Vector,
     step: Vector,
     /// Of all local displacements: steps, and additions to the right-hand side.
     local_step: Vec<f64>,
     local_right_side: Vec<f64>,
+}
+
+/// Who solves the condensed system.
+enum Solver {
+    /// A linear solver of PETSc, which the options choose.
+    Whole(Matrix, Ksp),
+    /// Each rank its own elements, and all together what is between them.
+    Substructures(Box<Substructures>),
 }
 
 impl CondensedSolve {
@@ -42,9 +56,7 @@ impl CondensedSolve {
     pub fn new(system: Rc<System>) -> petsc::Result<Self> {
         let (comm, local, numbering) = (system.comm(), system.local(), &system.numbering);
         let (elimination, pattern) = Elimination::new(&local, numbering, comm.rank() as usize);
-        let owned = system.owned_displacements();
-        let matrix = Matrix::from_coo(comm, owned, &pattern.rows, &pattern.columns)?;
-        let right_side = Vector::new(comm, owned)?;
+        let right_side = Vector::new(comm, system.owned_displacements())?;
         let rows: Vec<i32> = local
             .nodes
             .iter()
@@ -52,9 +64,8 @@ impl CondensedSolve {
             .flat_map(|row| [row, row + 1])
             .collect();
         let parts = Parts {
-            solver: solver(comm, &matrix, local.problem.friction_coefficient == 0.0)?,
+            solver: Solver::new(&system, &pattern, &rows)?,
             elimination,
-            matrix,
             step: right_side.duplicate()?,
             local_step: vec![0.0; rows.len()],
             local_right_side: vec![0.0; rows.len()],
@@ -77,13 +88,18 @@ impl CondensedSolve {
     pub fn factor(&self, active: &[i32]) -> petsc::Result<bool> {
         let Parts {
             elimination,
-            matrix,
             solver,
             ..
         } = &mut *self.parts.borrow_mut();
         let jacobian = self.system.jacobian_values();
-        matrix.set_values_coo(elimination.condense(&jacobian, active))?;
-        Ok(!solver.set_up()?.is_diverged())
+        let values = elimination.condense(&jacobian, active);
+        match solver {
+            Solver::Whole(matrix, solver) => {
+                matrix.set_values_coo(values)?;
+                Ok(!solver.set_up()?.is_diverged())
+            }
+            Solver::Substructures(solver) => solver.factor(values),
+        }
     }
 
     /// Solves for a right-hand side `r` on the reduced set, whose unknowns are in the order of their
@@ -108,7 +124,15 @@ impl CondensedSolve {
         self.scatter.forward(right_side, local_step)?;
         elimination.forward(&r, local_step, local_right_side);
         self.scatter.reverse_add(local_right_side, right_side)?;
-        solver.solve(right_side, condensed_step)?;
+        match solver {
+            Solver::Whole(_, solver) => {
+                solver.solve(right_side, condensed_step)?;
+            }
+            Solver::Substructures(solver) => {
+                self.scatter.forward(right_side, local_step)?;
+                solver.solve(local_step, condensed_step)?;
+            }
+        }
         self.scatter.forward(condensed_step, local_step)?;
         let mut step = step.write()?;
         step[..owned].copy_from_slice(&condensed_step.read()?);
@@ -121,13 +145,41 @@ impl CondensedSolve {
     /// # Errors
     /// If PETSc fails.
     pub fn factor_solver(&self) -> petsc::Result<Option<String>> {
-        let solver = &self.parts.borrow().solver;
-        Ok(solver.factor_solver()?.or(solver.preconditioner()?))
+        match &self.parts.borrow().solver {
+            Solver::Whole(_, solver) => Ok(solver.factor_solver()?.or(solver.preconditioner()?)),
+            Solver::Substructures(_) => Ok(Some("mumps, substructures".to_owned())),
+        }
+    }
+}
+
+impl Solver {
+    /// For a pattern in local displacements, whose rows are given.
+    fn new(system: &System, pattern: &CondensedPattern, rows: &[i32]) -> petsc::Result<Self> {
+        let symmetric = system.local().problem.friction_coefficient == 0.0;
+        let mut free = options::get(PACKAGE.0)?.is_none_or(|package| package == PACKAGE.1);
+        for name in CHOICES {
+            free &= !options::is_given(name)?;
+        }
+        if free && let Some(solver) = Substructures::new(system, pattern, symmetric)? {
+            return Ok(Self::Substructures(Box::new(solver)));
+        }
+        let global = |local: &[i32]| -> Vec<i32> {
+            let row = |&i: &i32| usize::try_from(i).map_or(-1, |i| rows[i]);
+            local.iter().map(row).collect()
+        };
+        let matrix = Matrix::from_coo(
+            system.comm(),
+            system.owned_displacements(),
+            &global(&pattern.rows),
+            &global(&pattern.columns),
+        )?;
+        let solver = whole(system.comm(), &matrix, symmetric)?;
+        Ok(Self::Whole(matrix, solver))
     }
 }
 
 /// The solver of the condensed system: a direct one, whose package and ordering the options choose.
-fn solver<C: Communicator>(comm: &C, matrix: &Matrix, symmetric: bool) -> petsc::Result<Ksp> {
+fn whole<C: Communicator>(comm: &C, matrix: &Matrix, symmetric: bool) -> petsc::Result<Ksp> {
     let mut solver = Ksp::new(comm)?;
     solver.set_options_prefix(PREFIX)?;
     solver.set_operator(matrix)?;

@@ -28,7 +28,8 @@ pub(super) struct Elimination {
     known: Vec<KnownColumn>,
 }
 
-/// Rows and columns of the condensed matrix's entries; a negative row or column is left out.
+/// Rows and columns of the condensed matrix's entries as local displacements; a negative row or column
+/// is left out.
 pub(super) struct CondensedPattern {
     pub rows: Vec<i32>,
     pub columns: Vec<i32>,
@@ -77,9 +78,6 @@ impl Elimination {
             .supports
             .iter()
             .for_each(|s| prescribed[s.unknown] = true);
-        let row_of = |unknown: usize| {
-            (numbering.displacement_row(local.nodes[unknown / 2]) + unknown % 2) as i32
-        };
         let (mut rows, mut columns, mut known) = (Vec::new(), Vec::new(), Vec::new());
         let mut block = |unknowns: &[usize]| {
             for &row in unknowns {
@@ -89,8 +87,8 @@ impl Elimination {
                         let entry = rows.len();
                         known.push(KnownColumn { entry, row, column });
                     }
-                    rows.push(if free { row_of(row) } else { -1 });
-                    columns.push(if free { row_of(column) } else { -1 });
+                    rows.push(if free { row as i32 } else { -1 });
+                    columns.push(if free { column as i32 } else { -1 });
                 }
             }
         };
@@ -111,8 +109,8 @@ impl Elimination {
         }
         // The owner keeps a one on the diagonal of a prescribed displacement.
         for support in local.supports.iter().filter(|s| local.owned[s.unknown / 2]) {
-            rows.push(row_of(support.unknown));
-            columns.push(row_of(support.unknown));
+            rows.push(support.unknown as i32);
+            columns.push(support.unknown as i32);
         }
         let this = Self {
             points,

@@ -17,6 +17,7 @@ mod sample;
 mod seed;
 mod share;
 mod snapshot;
+mod substructures;
 
 pub use census::Share;
 pub use condensed::CondensedSolve;
