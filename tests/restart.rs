@@ -88,7 +88,7 @@ fn on_two_ranks_too() {
         2,
         &[
             CASE,
-            "-friction_coefficient 0.1342 -condensed_pc_type redundant",
+            "-friction_coefficient 0.1342",
         ],
     );
 }
