@@ -11,18 +11,17 @@ use petsc::{
     Alpha2State, CallbackError, Matrix, SnesReason, SnesRef, Ts, TsReason, TsRef, Vector, VectorRef,
 };
 
+use super::RunError;
 use super::checkpoint::{Resumed, RunState, hardening_checksum};
+use super::diagnosis::{Refusal, SolveWatch};
 use super::ledger::{Ledger, StepEffort};
-use super::linear::LinearSolve;
 use super::newton::{Damping, TangentInertia};
 use super::recorder::Recorder;
-use super::refusal::Refusal;
-use super::solve_watch::SolveWatch;
+use super::setup::{LinearSolve, defaults};
 use super::spent::Spent;
 use super::springback::{Springback, springback};
 use super::step_size::StepControl;
 use super::stop_watch::StopWatch;
-use super::{RunError, defaults};
 use crate::case::{Case, Dynamics};
 use crate::output::StepRecord;
 use crate::system::{FieldSampler, System};

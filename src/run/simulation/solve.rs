@@ -4,10 +4,10 @@ use petsc::{
     CallbackError, ConvergenceCheck, LineSearchInfo, SnesReason, SnesRef, TsRef, VectorRef,
 };
 
-use super::super::ledger::LEAST_FORCE;
-use super::super::newton::limited_length;
 use super::Simulation;
-use crate::run::solve_watch::SolveWatch;
+use crate::run::diagnosis::SolveWatch;
+use crate::run::ledger::LEAST_FORCE;
+use crate::run::newton::limited_length;
 
 /// Largest imbalance and largest pull of a contact point after a converged solve, as a share of the
 /// last punch force.
