@@ -1,5 +1,5 @@
-//! In: what was seen of the solves that were refused, and the rows of a run. Out: why a run stopped, what the user can do
-//! about it, and what else should be known of it.
+//! In: what is seen of the solves, and the rows of a run. Out: why a solve was refused and a run stopped, what the user
+//! can do about it, and what else should be known of it.
 //! Never: a change to the run, or how the text is laid out.
 
 mod notes;

@@ -41,8 +41,8 @@ pub(in crate::run) fn notes(case: &Case, records: &[StepRecord]) -> Vec<String> 
         )
     };
     vec![format!(
-        "A tool goes into the sheet between its contact points: from a stroke of {:.2} mm on, by up to {} mm; the limit is \
-         {} mm. The {points} stand {spacing:.2} mm apart; {remedy}.",
+        "A tool goes into the sheet between its contact points: from a stroke of {:.2} mm on, by up to {} mm; \
+         the limit is {} mm. The {points} stand {spacing:.2} mm apart; {remedy}.",
         first.stroke_mm,
         number(deepest),
         number(limit)
