@@ -12,9 +12,10 @@ use crate::output::monitor::Monitor;
 use crate::output::{OutputDir, number, plot};
 use crate::system::{Problem, Share, System};
 
-/// Memory of a rank without any unknowns, alone and among others, and per unknown it owns, bytes: fitted to the peaks of
-/// resident memory of short runs with 3 924, 9 882 and 29 962 unknowns on one rank (69, 95 and 206 MB: 5 % off at most), and
-/// of 9 882 on 2 and 4 ranks and 29 962 on 2 (78 to 81, 68 to 73 and 137 to 144 MB per rank: 8 % off at most).
+/// Memory of a rank without any unknowns, alone and among others, and per unknown it owns, bytes: fitted to the peaks
+/// of resident memory of short runs with 3 924, 9 882 and 29 962 unknowns on one rank (69, 95 and 206 MB: 5 % off at
+/// most), and of 9 882 on 2 and 4 ranks and 29 962 on 2 (78 to 81, 68 to 73 and 137 to 144 MB per rank: 8 % off at
+/// most).
 const MEMORY_ALONE: f64 = 48e6;
 const MEMORY_AMONG_OTHERS: f64 = 55e6;
 const MEMORY_PER_UNKNOWN: f64 = 5250.0;

@@ -2,27 +2,20 @@
 //! the step that cannot be solved, and how it ended.
 //! Never: mechanics, or how a file is written.
 
-mod blas;
 mod checkpoint;
 mod conclusion;
-mod defaults;
 mod diagnosis;
 mod dry_run;
-mod inputs;
-mod judgement;
 mod ledger;
-mod linear;
 mod newton;
 mod recorder;
-mod refusal;
+mod setup;
 mod simulation;
-mod solve_watch;
 mod spent;
 mod springback;
 mod static_path;
 mod step_size;
 mod stop_watch;
-mod unread;
 
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -34,12 +27,11 @@ use petsc::{CallbackError, TsReason};
 
 pub use checkpoint::{RestartError, Resumed};
 pub use conclusion::{Ending, conclude};
+pub use diagnosis::{Course, Flip, Refusal};
 pub use ledger::{Ledger, StepEffort};
 pub use newton::Damping;
 pub use recorder::Recorder;
-pub use refusal::Refusal;
 pub use simulation::{Counts, Interruption};
-pub use solve_watch::{Course, Flip};
 pub use springback::{Springback, springback};
 pub use static_path::StaticPath;
 pub use step_size::StepControl;
@@ -48,6 +40,7 @@ pub use stop_watch::StopCause;
 use crate::case::{self, Case, CaseError};
 use crate::output::{OutputError, number};
 use crate::system::{Problem, System, SystemError};
+use setup::{blas, defaults, unread};
 use simulation::Simulation;
 use spent::Spent;
 use stop_watch::StopWatch;

@@ -6,8 +6,8 @@ use std::rc::Rc;
 use petsc::{Snes, SnesReason, Vector, VectorRef};
 
 use super::RunError;
-use super::linear::LinearSolve;
 use super::newton::Damping;
+use super::setup::LinearSolve;
 use crate::system::System;
 
 /// Solves a system statically at the times it is given and commits what converged.

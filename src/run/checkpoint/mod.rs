@@ -52,7 +52,8 @@ impl Resumed {
         restored.map_err(|reason| OutputError::Checkpoint { path, reason })
     }
 
-    /// For each of this rank's nodes and of its contact points, the row that has it in the field files so far. Collective.
+    /// For each of this rank's nodes and of its contact points, the row that has it in the field files so far.
+    /// Collective.
     pub(super) fn rows_so_far(&self, system: &System) -> Result<[Vec<usize>; 2], OutputError> {
         let now = system.own_file_numbers();
         let find = |now: &[usize], then: &[u64]| -> Option<Vec<usize>> {

@@ -7,11 +7,11 @@ use mpi::collective::SystemOperation;
 use mpi::traits::CommunicatorCollectives;
 use petsc::{Alpha2State, CallbackError, Ts, TsReason, TsRef, Vector, VectorRef};
 
-use super::super::RunError;
-use super::super::checkpoint::{Resumed, RunState};
-use super::super::stop_watch::{Order, StopCause};
 use super::Simulation;
 use crate::output::OutputError;
+use crate::run::RunError;
+use crate::run::checkpoint::{Resumed, RunState};
+use crate::run::stop_watch::{Order, StopCause};
 
 /// A run that was ended before its end.
 #[derive(Clone, Debug)]

@@ -1,13 +1,15 @@
-//! What happens within one Newton solve: where it starts, how far its steps go, when it is done.
+//! What happens within one Newton solve: where it starts, how far its steps go, when it is done or
+//! given up.
 
 use petsc::{
     CallbackError, ConvergenceCheck, LineSearchInfo, SnesReason, SnesRef, TsRef, VectorRef,
 };
 
-use super::super::ledger::LEAST_FORCE;
-use super::super::newton::limited_length;
 use super::Simulation;
-use crate::run::solve_watch::SolveWatch;
+use crate::run::diagnosis::{Refusal, SolveWatch};
+use crate::run::ledger::LEAST_FORCE;
+use crate::run::newton::limited_length;
+use crate::run::setup::defaults;
 
 /// Largest imbalance and largest pull of a contact point after a converged solve, as a share of the
 /// last punch force.
@@ -105,6 +107,42 @@ impl Simulation {
             guess[i] = now[i] + ratio * (now[i] - before[i]);
         }
         Ok(())
+    }
+
+    /// Counts a solve, and ends the attempts where a shorter step must not be tried.
+    pub(super) fn after_solve(&self, ts: &mut TsRef, t: f64) -> Result<(), CallbackError> {
+        let snes: &SnesRef = ts.snes()?;
+        let reason: SnesReason = snes.converged_reason()?;
+        let iterations = snes.iteration_number()?.unsigned_abs();
+        let mut counts = self.counts.get();
+        counts.newton += u64::from(iterations);
+        if reason.is_diverged() {
+            counts.refused += 1;
+            self.refuse(t, ts.time_step()?, reason, iterations);
+        }
+        self.counts.set(counts);
+        // PETSc would go on shortening the step, or repeating the first one: stop it where it must not.
+        let next = ts.time_step()? * defaults::CUT_BACK;
+        if reason.is_diverged() && (counts.steps == 0 || next < self.least_step) {
+            ts.set_max_step_rejections(0)?;
+        }
+        Ok(())
+    }
+
+    /// Notes a solve that did not converge, and shows it. Collective.
+    fn refuse(&self, t: f64, dt: f64, reason: SnesReason, iterations: u32) {
+        let watch = self.watch.borrow();
+        let refusal = Refusal::new(
+            &self.system,
+            &watch,
+            (t, dt),
+            reason,
+            iterations,
+            self.tolerance,
+        );
+        let mut recorder = self.recorder.borrow_mut();
+        recorder.show(&format!("         refused: {refusal}\n"));
+        self.refusals.borrow_mut().push(refusal);
     }
 
     pub(super) fn show_iteration(

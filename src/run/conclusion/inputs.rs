@@ -7,9 +7,9 @@ use sha2::{Digest, Sha256};
 
 use crate::case::Case;
 
-/// SHA-256 of the option files of the command line and of the hardening table by file name, and of all options in effect
-/// but the output folder. Folders are left out: they say where, not what. Files read before may be gone by now: then they
-/// are left out, too.
+/// SHA-256 of the option files of the command line and of the hardening table by file name, and of all options in
+/// effect but the output folder. Folders are left out: they say where, not what. Files read before may be gone by now:
+/// then they are left out, too.
 pub(super) fn checksums(case: &Case) -> BTreeMap<String, String> {
     let words: Vec<String> = std::env::args().collect();
     let mut files: Vec<String> = words

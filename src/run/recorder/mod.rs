@@ -1,26 +1,28 @@
-//! Hands what the run knows to the output: monitor, history, fields, figures.
+//! In: accepted steps and what can be told of them. Out: monitor, history, fields, figures and checkpoints, through the
+//! writers of the output.
+//! Never: how a file is written, or a choice of the run.
+
+mod figures;
 
 use std::io::stdout;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use mpi::traits::Communicator;
 
 use super::checkpoint::{Resumed, RunState, STATE};
-use crate::case::{Case, ReferenceForce};
+use crate::case::Case;
 use crate::output::folder::{CONTACT, FIELDS, HISTORY, TOOLS};
-use crate::output::plot::{self, DeformedElement, Shape, View, gather_elements};
 use crate::output::{
     Arrays, ContactFile, ContactSample, FieldSample, History, Monitor, OutputDir, OutputError,
     SheetFile, SheetPart, StepRecord, ToolsFile, agree, checkpoint, history,
 };
-use crate::system::{NodeSample, Problem, System, Tool};
+use crate::system::{NodeSample, System};
 use crate::tool::PunchMotion;
+use figures::outline;
+pub(super) use figures::right_halves;
 
-/// Spacing of the points of the drawn tools, mm.
+/// Spacing of the points of the tools in the fields, mm.
 const TOOL_SPACING: f64 = 0.25;
-/// The same in figures, which look closer.
-const FINE_TOOL_SPACING: f64 = 0.05;
 
 /// All files of a run. They close when it is dropped, which must be before MPI ends.
 pub struct Recorder {
@@ -104,7 +106,8 @@ impl Recorder {
         Ok(this)
     }
 
-    /// Writes a checkpoint: the state of the run, which is complete on rank 0, and the tables and fields so far. Collective.
+    /// Writes a checkpoint: the state of the run, which is complete on rank 0, and the tables and fields so far.
+    /// Collective.
     ///
     /// # Errors
     /// If it cannot be written, for example when the disk is full; the same on every rank.
@@ -184,55 +187,6 @@ impl Recorder {
         is_end || (self.every > 0 && self.records.len().is_multiple_of(self.every))
     }
 
-    /// Draws the deformed sheet between the tools at time `t` (ms), under the name `label`. Collective.
-    ///
-    /// # Errors
-    /// If the figure cannot be written.
-    pub fn shape(
-        &self,
-        label: &str,
-        t: f64,
-        nodes: &[NodeSample],
-        system: &System,
-    ) -> Result<(), OutputError> {
-        let samples: Vec<FieldSample> = nodes.iter().map(field_sample).collect();
-        let elements = gather_elements(system.comm(), &DeformedElement::of(&self.part, &samples));
-        if self.history.is_none() {
-            return Ok(());
-        }
-        let local = system.local();
-        let problem = local.problem();
-        let depth = self.motion.depth(t);
-        let (die, punch) = right_halves(problem);
-        let figure = Shape {
-            title: &format!("{label}: punch down by {depth:.2} mm"),
-            elements: &elements,
-            die: &die,
-            punch: &punch,
-            stroke_mm: depth,
-            plastic_strain_max: None,
-            view: View::Whole,
-        };
-        let name = format!("shape-{}.svg", label.replace(' ', "-"));
-        plot::shape(self.folder.file(&name), &figure)
-    }
-
-    /// Draws force against stroke beside the reference, on rank 0.
-    ///
-    /// # Errors
-    /// If the figure cannot be written.
-    pub fn force_figure(&self, reference: &ReferenceForce) -> Result<(), OutputError> {
-        if self.history.is_none() || self.records.is_empty() {
-            return Ok(());
-        }
-        plot::force(
-            self.folder.force_figure(),
-            "Force of the punch, whole sheet",
-            &self.records,
-            reference,
-        )
-    }
-
     /// Writes the fields at time `t` (ms) with the local values of the unknowns. Collective.
     ///
     /// # Errors
@@ -277,24 +231,4 @@ fn field_sample(node: &NodeSample) -> FieldSample {
         gap: node.gap,
         contact_status: i32::from(node.contact_pressure > 0.0),
     }
-}
-
-/// The right halves of die and punch in their first positions, from the axis outwards, mm.
-pub(super) fn right_halves(problem: &Problem) -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
-    let right_half = |tool: &Option<Arc<Tool>>| -> Vec<[f64; 2]> {
-        let points = outline(tool.as_deref(), FINE_TOOL_SPACING);
-        points
-            .into_iter()
-            .filter(|point| point[0] > -1e-9)
-            .collect()
-    };
-    let mut punch = right_half(&problem.upper_tool);
-    // The punch is walked from its side to its tip.
-    punch.reverse();
-    (right_half(&problem.lower_tool), punch)
-}
-
-/// Outline of a tool in its first position, with `spacing` (mm) between points.
-fn outline(tool: Option<&Tool>, spacing: f64) -> Vec<[f64; 2]> {
-    tool.map_or_else(Vec::new, |tool| tool.profile.polyline(spacing))
 }

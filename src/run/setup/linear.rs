@@ -52,7 +52,7 @@ const NEED_ENTRIES: &[&str] = &[
 ];
 
 /// The linear solve the options ask for.
-pub(super) struct LinearSolve {
+pub(in crate::run) struct LinearSolve {
     condensed: Option<Rc<CondensedSolve>>,
 }
 

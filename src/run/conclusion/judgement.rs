@@ -1,9 +1,9 @@
 //! What a run is judged by: the reference values of its case, and the certificate of every step.
 
-use super::RunError;
-use super::ledger::LEAST_FORCE;
 use crate::case::{self, Case, Instant, ReferenceValue};
 use crate::output::{StepRecord, Tolerance, VerdictRow, VerdictTable};
+use crate::run::RunError;
+use crate::run::ledger::LEAST_FORCE;
 
 /// Largest share by which punch force may differ from die force and inertia.
 pub(super) const BALANCE_LIMIT: f64 = 1e-6;

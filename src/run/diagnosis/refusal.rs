@@ -32,7 +32,7 @@ pub struct Refusal {
 
 impl Refusal {
     /// From what this rank watched of the solve of a step to `time` of length `dt` (ms). Collective.
-    pub(super) fn new(
+    pub(in crate::run) fn new(
         system: &System,
         watch: &SolveWatch,
         (time, dt): (f64, f64),

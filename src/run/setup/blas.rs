@@ -9,7 +9,7 @@ use mpi::traits::Communicator;
 
 /// The BLAS in the process.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Blas {
+pub(in crate::run) struct Blas {
     /// The variant's name, which is that of its folder: `openblas-serial`, `blas`, ...
     variant: String,
     /// Threads it may use on each rank.
@@ -25,7 +25,7 @@ const LIMITS: &[&str] = &["OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"];
 
 impl Blas {
     /// The one that is loaded; none where the system does not tell.
-    pub(super) fn loaded() -> Option<Self> {
+    pub(in crate::run) fn loaded() -> Option<Self> {
         let maps = std::fs::read_to_string("/proc/self/maps").ok()?;
         let limit = LIMITS
             .iter()
@@ -79,7 +79,7 @@ impl fmt::Display for Blas {
 }
 
 /// The line about it above a run, and a warning for each complaint, with line breaks. Collective.
-pub(super) fn report(comm: &SimpleCommunicator) -> String {
+pub(in crate::run) fn report(comm: &SimpleCommunicator) -> String {
     let beside = comm.split_shared(comm.rank()).size().unsigned_abs() as usize;
     let Some(blas) = Blas::loaded() else {
         return String::new();

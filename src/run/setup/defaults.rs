@@ -5,14 +5,14 @@ use mpi::traits::Communicator;
 use petsc::Ts;
 use petsc::options::set_default;
 
-use super::RunError;
 use crate::case::Case;
+use crate::run::RunError;
 
 /// By how much a step shrinks when its solve is refused.
-pub(super) const CUT_BACK: f64 = 0.4;
+pub(in crate::run) const CUT_BACK: f64 = 0.4;
 
 /// Most refused solves of one step; the least step ends them long before.
-pub(super) const MOST_REJECTIONS: i32 = 1000;
+pub(in crate::run) const MOST_REJECTIONS: i32 = 1000;
 
 /// Options that hold for every case.
 const DEFAULTS: &[(&str, &str)] = &[
@@ -34,7 +34,7 @@ const DEFAULTS: &[(&str, &str)] = &[
 ///
 /// # Errors
 /// PETSc's words about the value.
-pub(super) fn read_options(case: &Case, comm: &SimpleCommunicator) -> Result<(), RunError> {
+pub(in crate::run) fn read_options(case: &Case, comm: &SimpleCommunicator) -> Result<(), RunError> {
     set(case)?;
     Ok(Ts::new(&comm.duplicate())?.set_from_options()?)
 }
@@ -47,7 +47,7 @@ pub(super) fn is_default(name: &str, value: Option<&str>) -> bool {
 }
 
 /// Puts the defaults into PETSc's option database.
-pub(super) fn set(case: &Case) -> petsc::Result<()> {
+pub(in crate::run) fn set(case: &Case) -> petsc::Result<()> {
     for (name, value) in DEFAULTS {
         set_default(name, value)?;
     }

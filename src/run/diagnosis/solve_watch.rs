@@ -10,7 +10,7 @@ const SAME: f64 = 0.02;
 
 /// What one Newton solve looked like so far, on this rank.
 #[derive(Clone, Debug, Default)]
-pub(super) struct SolveWatch {
+pub(in crate::run) struct SolveWatch {
     norms: Vec<f64>,
     /// Status of this rank's contact points at the last look: see `System::contact_status`.
     status: Vec<u8>,
@@ -37,7 +37,7 @@ pub enum Flip {
 
 impl SolveWatch {
     /// Takes the residual norm (mm) at an iteration; 0 starts a new solve.
-    pub(super) fn residual(&mut self, iteration: usize, norm: f64) {
+    pub(in crate::run) fn residual(&mut self, iteration: usize, norm: f64) {
         if iteration == 0 {
             *self = Self::default();
         }
@@ -45,12 +45,12 @@ impl SolveWatch {
     }
 
     /// Whether the status of the points is wanted at this iteration of a solve that may have `most`.
-    pub(super) fn looks(iteration: usize, most: usize) -> bool {
+    pub(in crate::run) fn looks(iteration: usize, most: usize) -> bool {
         iteration + LAST_ITERATIONS >= most
     }
 
     /// Takes the status of this rank's points.
-    pub(super) fn status(&mut self, now: Vec<u8>) {
+    pub(in crate::run) fn status(&mut self, now: Vec<u8>) {
         self.changes.resize(now.len(), Changes::default());
         for ((old, new), changes) in self.status.iter().zip(&now).zip(&mut self.changes) {
             if (*old == 0) != (*new == 0) {
@@ -63,13 +63,13 @@ impl SolveWatch {
     }
 
     /// Residual norms of the solve, mm.
-    pub(super) fn norms(&self) -> &[f64] {
+    pub(in crate::run) fn norms(&self) -> &[f64] {
         &self.norms
     }
 
     /// This rank's points that flip. Where so few iterations were allowed that none could change twice, one change is
     /// enough.
-    pub(super) fn flips(&self) -> impl Iterator<Item = (usize, Flip)> {
+    pub(in crate::run) fn flips(&self) -> impl Iterator<Item = (usize, Flip)> {
         let enough = if self.norms.len() > LAST_ITERATIONS {
             FLIPS
         } else {

@@ -1,0 +1,89 @@
+//! In: the outcome of a run. Out: verdicts, summary, figures, report, and the word whether it holds.
+//! Never: another step of the run, or how a file is written.
+
+mod angles;
+mod banner;
+mod inputs;
+mod judgement;
+mod summary;
+
+use mpi::traits::Communicator;
+use petsc::Session;
+
+use super::setup::unread;
+use super::{Outcome, RunError};
+use crate::case::Case;
+use crate::output::Report;
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// It finished, and every verdict holds.
+    Holds,
+    /// It could not be solved to the end, or a verdict does not hold.
+    DoesNotHold,
+    /// It was ended on request, and can go on.
+    Interrupted,
+}
+
+/// Judges, writes and shows what came out. Collective.
+///
+/// # Errors
+/// If a file cannot be written.
+pub fn conclude(
+    case: &Case,
+    mut outcome: Outcome,
+    session: &Session,
+    comm: &impl Communicator,
+) -> Result<Ending, RunError> {
+    let to_the_end = outcome.failure.is_none() && outcome.interruption.is_none();
+    let verdicts = judgement::judge(case, outcome.recorder.records(), to_the_end)?;
+    let reference = case.reference_force()?;
+    let summary = summary::summarise(case, &outcome, session, comm, verdicts.clone());
+    if comm.rank() == 0 {
+        summary.write(outcome.recorder.folder().summary())?;
+        outcome.recorder.force_figure(&reference)?;
+    }
+    let mut text = if verdicts.rows.is_empty() {
+        "\n".to_owned()
+    } else {
+        format!("\n{}\n", verdicts.text())
+    };
+    text.push_str(&unread::warnings()?);
+    let (banner, ending) = match (&summary.diagnosis, &outcome.interruption) {
+        (Some(diagnosis), _) => (
+            banner::failed(case, diagnosis, &outcome, &summary.notes),
+            Ending::DoesNotHold,
+        ),
+        (None, Some(stop)) => (
+            banner::interrupted(case, stop, &outcome, &summary.notes),
+            Ending::Interrupted,
+        ),
+        (None, None) => {
+            let holds = verdicts.failures() == 0;
+            let ending = if holds {
+                Ending::Holds
+            } else {
+                Ending::DoesNotHold
+            };
+            (
+                banner::finished(case, &outcome, &verdicts, &summary.notes),
+                ending,
+            )
+        }
+    };
+    text.push_str(&banner);
+    outcome.recorder.show(&text);
+    // The page is made from the files of the run, which all ranks must have closed.
+    let (folder, records) = outcome.recorder.close();
+    if comm.rank() == 0 {
+        let report = Report {
+            case,
+            summary: &summary,
+            records: &records,
+            reference: &reference,
+        };
+        report.write(&folder)?;
+    }
+    Ok(ending)
+}

@@ -1,0 +1,100 @@
+//! What a run was, as it goes to `summary.json` and the report.
+
+use std::collections::BTreeMap;
+
+use mpi::traits::Communicator;
+use petsc::Session;
+
+use super::angles::{NamedAngle, angles};
+use super::inputs;
+use super::judgement::{BALANCE_LIMIT, CONE_LIMIT, PULL_LIMIT};
+use crate::case::Case;
+use crate::output::VerdictTable;
+use crate::output::summary::{Certificates, Counts, Provenance, Status, Summary, Timing};
+use crate::run::Outcome;
+use crate::run::diagnosis::{diagnose, notes};
+use crate::run::setup::blas::Blas;
+
+/// The summary of an outcome and its verdicts.
+pub(super) fn summarise(
+    case: &Case,
+    outcome: &Outcome,
+    session: &Session,
+    comm: &impl Communicator,
+    verdicts: VerdictTable,
+) -> Summary {
+    let records = outcome.recorder.records();
+    let mut certificates = Certificates::default();
+    records
+        .iter()
+        .for_each(|record| certificates.observe(record));
+    let (status, reason) = match (&outcome.failure, &outcome.interruption) {
+        (Some(failure), _) => (Status::NotConverged, Some(failure.sentence())),
+        (None, Some(stop)) => (Status::Interrupted, Some(stop.sentence())),
+        (None, None) => (Status::Finished, None),
+    };
+    let text = |value: &str| value.to_owned();
+    let angles = angles(case, outcome);
+    let by_name = |value: fn(&NamedAngle) -> f64| {
+        let pair = |angle: &NamedAngle| (angle.name.clone(), value(angle));
+        angles.iter().map(pair).collect()
+    };
+    Summary {
+        status,
+        reason,
+        diagnosis: outcome
+            .failure
+            .as_ref()
+            .map(|failure| diagnose(case, failure, outcome.counts.steps)),
+        notes: notes(case, records),
+        last: records.last().copied(),
+        angles_deg: by_name(|angle| angle.degrees),
+        angle_fit_residuals_mm: by_name(|angle| angle.fit_residual),
+        counts: Counts {
+            steps: outcome.counts.steps,
+            refused_solves: outcome.counts.refused,
+            newton_iterations: outcome.counts.newton,
+            linear_solves: outcome.counts.newton,
+        },
+        tolerances: BTreeMap::from([
+            (text("newton_residual_mm"), case.stepping.newton_tolerance),
+            (
+                text("penetration_mm"),
+                case.discretisation.penetration_limit,
+            ),
+            (text("pull"), PULL_LIMIT),
+            (text("balance"), BALANCE_LIMIT),
+            (text("cone"), CONE_LIMIT),
+        ]),
+        worst: certificates.worst(),
+        verdicts,
+        provenance: Provenance {
+            version: text(env!("CARGO_PKG_VERSION")),
+            git_revision: text(env!("SSNP155_REVISION")),
+            petsc_version: session.version(),
+            mpi_ranks: comm.size().unsigned_abs(),
+            build: BTreeMap::from([
+                (text("petsc_headers"), text(env!("SSNP155_PETSC"))),
+                (
+                    text("direct_solver"),
+                    outcome.factor_solver.clone().unwrap_or_default(),
+                ),
+                (text("unknowns"), outcome.unknowns.to_string()),
+                (
+                    text("blas"),
+                    Blas::loaded().map_or_else(|| text("not known"), |blas| blas.to_string()),
+                ),
+            ]),
+            inputs: inputs::checksums(case),
+            options: case
+                .options()
+                .into_iter()
+                .map(|(name, value)| (text(name), value))
+                .collect(),
+        },
+        timing: Timing {
+            cpu_s: outcome.cpu_seconds,
+            wall_s: outcome.wall_seconds,
+        },
+    }
+}

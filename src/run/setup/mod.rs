@@ -1,0 +1,10 @@
+//! In: the options of the user. Out: PETSc's options and the linear solve this program chooses where the user does not,
+//! the options nobody read, and the BLAS that is at work.
+//! Never: a step of the run, or mechanics.
+
+pub(super) mod blas;
+pub(super) mod defaults;
+mod linear;
+pub(super) mod unread;
+
+pub(super) use linear::LinearSolve;
