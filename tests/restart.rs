@@ -83,14 +83,7 @@ fn a_resumed_run_is_the_unbroken_one_to_the_last_bit() {
 /// PETSc's own factorisation on every rank does not.
 #[test]
 fn on_two_ranks_too() {
-    same(
-        "two-ranks",
-        2,
-        &[
-            CASE,
-            "-friction_coefficient 0.1342",
-        ],
-    );
+    same("two-ranks", 2, &[CASE, "-friction_coefficient 0.1342"]);
 }
 
 /// Every option file, on a coarse mesh and a short way.

@@ -14,8 +14,8 @@ use crate::run::setup::defaults;
 /// Largest imbalance and largest pull of a contact point after a converged solve, as a share of the
 /// last punch force.
 const BALANCE_SHARE: f64 = 3e-7;
-/// Below this residual norm (mm) rounding may be all that is left.
-const BALANCE_FLOOR: f64 = 1e-12;
+/// A residual norm (mm) that rounding may keep a second iteration from lowering.
+const ROUNDING: f64 = 1e-12;
 
 impl Simulation {
     /// A small residual is not enough: its vertical sum is the imbalance of the tools' forces, which
@@ -26,7 +26,17 @@ impl Simulation {
         check: &ConvergenceCheck,
     ) -> Result<SnesReason, CallbackError> {
         self.watch_solve(snes, check)?;
-        if check.default != SnesReason::ConvergedAbsolute || check.residual_norm <= BALANCE_FLOOR {
+        if check.default != SnesReason::ConvergedAbsolute {
+            return Ok(check.default);
+        }
+        let low = |norms: &[f64]| norms.iter().all(|&norm| norm <= ROUNDING);
+        if self
+            .watch
+            .borrow()
+            .norms()
+            .last_chunk::<2>()
+            .is_some_and(|last| low(last))
+        {
             return Ok(check.default);
         }
         let imbalance = self.system.vertical_sum(snes.function()?)?;
