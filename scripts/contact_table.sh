@@ -17,7 +17,7 @@ run() {
     shift
     [ -e "$folder/$name/summary.json" ] && return
     # A run whose verdicts fail is a result, too.
-    target/release/ssnp155 -options_file inputs/ssnp155.opts -report_strokes "1,2,5,8,10,12$dense,26,28" -output_every 0 \
+    "${CARGO_TARGET_DIR:-target}/release/ssnp155" -options_file inputs/ssnp155.opts -report_strokes "1,2,5,8,10,12$dense,26,28" -output_every 0 \
         -output_dir "$folder/$name" "$@" || true
 }
 
