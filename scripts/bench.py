@@ -208,11 +208,18 @@ def large():
 def ranks():
     """Strong and weak scaling of the first 5 mm, and the same answer on more ranks than cores."""
     mesh = lambda nx, ny: ["-sheet_nx", str(nx), "-sheet_ny", str(ny)]
-    strong = [run(f"strong-{n}", [*START, *mesh(680, 20)], n) for n in (1, 2)]
-    # scripts/environment.sh lets a waiting rank yield its core, which costs where nobody else wants it.
-    strong.append(run("strong-2-busy", [*START, *mesh(680, 20)], 2, OMPI_MCA_mpi_yield_when_idle="0"))
+    fine = [*START, *mesh(680, 20)]
+    strong = [
+        ("1", run("strong-1", fine)),
+        ("2", run("strong-2", fine, 2)),
+        # scripts/environment.sh lets a waiting rank yield its core, which costs where nobody else wants it.
+        ("2, waiting busily (`OMPI_MCA_mpi_yield_when_idle=0`)",
+         run("strong-2-busy", fine, 2, OMPI_MCA_mpi_yield_when_idle="0")),
+        ("2, MUMPS over both (`-condensed_pc_type cholesky`)",
+         run("strong-2-whole", [*fine, "-condensed_pc_type", "cholesky"], 2)),
+    ]
     text = "\nStrong, 680 x 20:\n\n" + rank_table(strong)
-    weak = [run(f"weak-{n}", [*START, *mesh(340 * n, 20)], n) for n in (1, 2)]
+    weak = [(str(n), run(f"weak-{n}", [*START, *mesh(340 * n, 20)], n)) for n in (1, 2)]
     text += "\nWeak, 340 x 20 for each rank:\n\n" + rank_table(weak)
     many = [run(f"many-{n}", [*START, *mesh(170, 5)], n) for n in (1, 2, 4, 8)]
     text += "\nMore ranks than cores, 170 x 5 (for correctness):\n\n" + table(
@@ -220,23 +227,23 @@ def ranks():
         [(r["ranks"], f"{abs(r['force'] / many[0]['force'] - 1):.0e}",
           f"{abs(r['angle'] - many[0]['angle']):.0e}°", r["iterations"], f"{r['memory']:.0f} MB") for r in many])
     return text, {
-        "time on 2 ranks / on 1, 680 x 20": per_iteration(strong[1]) / per_iteration(strong[0]),
-        "messages an iteration, 680 x 20, 2 ranks": strong[1]["messages"][0] / strong[1]["iterations"],
-        "bytes an iteration, 680 x 20, 2 ranks": strong[1]["messages"][1] / strong[1]["iterations"],
+        "time on 2 ranks / on 1, 680 x 20": per_iteration(strong[1][1]) / per_iteration(strong[0][1]),
+        "messages an iteration, 680 x 20, 2 ranks": strong[1][1]["messages"][0] / strong[1][1]["iterations"],
+        "bytes an iteration, 680 x 20, 2 ranks": strong[1][1]["messages"][1] / strong[1][1]["iterations"],
     }
 
 
 def rank_table(runs):
-    first = runs[0]
+    first = runs[0][1]
     return table(
         ["ranks", "iterations", "an iteration", "speed-up", "factorisation", "solves", "tangent", "residual",
          "messages an iteration", "bytes an iteration", "memory of a rank"],
-        [(r["ranks"], r["iterations"], f"{1e3 * per_iteration(r):.0f} ms",
+        [(name, r["iterations"], f"{1e3 * per_iteration(r):.0f} ms",
           f"{per_iteration(first) / per_iteration(r):.2f}",
           f"{seconds(r, 'MatCholFctrNum'):.1f} s", f"{seconds(r, 'MatSolve'):.1f} s",
           f"{seconds(r, 'SheetJacobian'):.1f} s", f"{seconds(r, 'SheetResidual'):.1f} s",
           f"{r['messages'][0] / r['iterations']:.0f}", f"{r['messages'][1] / r['iterations'] / 1e6:.2f} MB",
-          f"{r['memory']:.0f} MB") for r in runs])
+          f"{r['memory']:.0f} MB") for name, r in runs])
 
 
 def kernels():

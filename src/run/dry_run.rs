@@ -12,13 +12,13 @@ use crate::output::monitor::Monitor;
 use crate::output::{OutputDir, number, plot};
 use crate::system::{Problem, Share, System};
 
-/// Memory of a rank without any unknowns, alone and among others, and per unknown it owns, bytes: fitted to the peaks
-/// of resident memory of short runs with 3 924, 9 882 and 29 962 unknowns on one rank (69, 95 and 206 MB: 5 % off at
-/// most), and of 9 882 on 2 and 4 ranks and 29 962 on 2 (78 to 81, 68 to 73 and 137 to 144 MB per rank: 8 % off at
-/// most).
-const MEMORY_ALONE: f64 = 48e6;
-const MEMORY_AMONG_OTHERS: f64 = 55e6;
-const MEMORY_PER_UNKNOWN: f64 = 5250.0;
+/// Memory of a rank without any unknowns, alone and among others, and for n log2 n with n the unknowns it owns (the
+/// factors of a plane mesh grow so), bytes: fitted to the peaks of resident memory of short runs with 3 924, 9 882,
+/// 29 962 and 100 722 unknowns on one rank (71, 99, 212 and 669 MB: 5 % off at most), and of 9 882 on 2 and 4 ranks and
+/// 100 722 on 2 (83, 75 and 373 MB per rank: 7 % off at most).
+const MEMORY_ALONE: f64 = 50e6;
+const MEMORY_AMONG_OTHERS: f64 = 60e6;
+const MEMORY_PER_UNKNOWN: f64 = 372.0;
 
 /// Shows the model and writes `model.svg`; nothing else is written. Collective.
 ///
@@ -220,7 +220,10 @@ fn memory(shares: &[Share]) -> String {
         1 => (MEMORY_ALONE, "1 rank".to_owned()),
         ranks => (MEMORY_AMONG_OTHERS, format!("{ranks} ranks together")),
     };
-    let of = |share: &Share| (least + MEMORY_PER_UNKNOWN * share.unknowns as f64) / 1e6;
+    let of = |share: &Share| {
+        let unknowns = share.unknowns.max(2) as f64;
+        (least + MEMORY_PER_UNKNOWN * unknowns * unknowns.log2()) / 1e6
+    };
     let sum: f64 = shares.iter().map(of).sum();
     format!("about {sum:.0} MB on {ranks} (peak of resident memory; measured runs lie within 10 %)")
 }
