@@ -114,7 +114,7 @@ fn curves<'a>(records: &[StepRecord], reference: &'a ReferenceForce) -> Vec<Curv
     if !reference.points.is_empty() {
         // Drawn as bars, not as a line; here for the legend.
         curves.push(Curve {
-            name: "reference values with tolerance",
+            name: "tested values",
             color: REFERENCE,
             width: 2.0,
             points: Vec::new(),
@@ -168,7 +168,7 @@ fn legend(canvas: &Canvas, curves: &[Curve], left: f64, top: f64) -> Result<(), 
             HPos::Left,
             false,
         )?;
-        x += 38.0 + text_width(curve.name, LABEL_SIZE) + 28.0;
+        x += 38.0 + text_width(curve.name, LABEL_SIZE) + 16.0;
     }
     Ok(())
 }

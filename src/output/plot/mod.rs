@@ -1,6 +1,6 @@
-//! Figures as SVG files: force against stroke, and the deformed sheet between its tools.
+//! Figures as SVG and PNG files: force against stroke, and the deformed sheet between its tools.
 //!
-//! In: step records; deformed elements and tool outlines. Out: one SVG file each, there in full or not at all.
+//! In: step records; deformed elements and tool outlines. Out: one file of each kind, there in full or not at all.
 //! Never: a window on the screen, or a value that is not in the input.
 
 mod canvas;
@@ -9,6 +9,7 @@ mod elements;
 mod force;
 mod geometry;
 mod model;
+mod png;
 mod shape;
 
 use std::path::Path;
@@ -21,7 +22,7 @@ pub use shape::{Shape, View, shape_svg};
 use super::{OutputError, StepRecord, atomic};
 use crate::case::{Case, ReferenceForce};
 
-/// Draws [`force_svg`] into a file.
+/// Draws [`force_svg`] into a file, and as PNG beside it.
 ///
 /// # Errors
 /// [`OutputError::Figure`] if it cannot be drawn, [`OutputError::Write`] if it cannot be written.
@@ -34,7 +35,7 @@ pub fn force(
     store(path.as_ref(), force_svg(title, records, reference))
 }
 
-/// Draws [`shape_svg`] into a file.
+/// Draws [`shape_svg`] into a file, and as PNG beside it.
 ///
 /// # Errors
 /// [`OutputError::Figure`] if it cannot be drawn, [`OutputError::Write`] if it cannot be written.
@@ -42,7 +43,7 @@ pub fn shape(path: impl AsRef<Path>, shape: &Shape) -> Result<(), OutputError> {
     store(path.as_ref(), shape_svg(shape))
 }
 
-/// Draws [`model_svg`] into a file.
+/// Draws [`model_svg`] into a file, and as PNG beside it.
 ///
 /// # Errors
 /// [`OutputError::Figure`] if it cannot be drawn, [`OutputError::Write`] if it cannot be written.
@@ -56,9 +57,12 @@ pub fn model(
 }
 
 fn store(path: &Path, svg: Result<String, String>) -> Result<(), OutputError> {
-    let svg = svg.map_err(|reason| OutputError::Figure {
+    let undrawn = |reason| OutputError::Figure {
         path: path.into(),
         reason,
-    })?;
-    atomic::write(path, svg.as_bytes())
+    };
+    let svg = svg.map_err(undrawn)?;
+    atomic::write(path, svg.as_bytes())?;
+    let png = png::png(&svg).map_err(undrawn)?;
+    atomic::write(&path.with_extension("png"), &png)
 }
