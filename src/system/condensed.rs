@@ -64,7 +64,7 @@ impl CondensedSolve {
             .flat_map(|row| [row, row + 1])
             .collect();
         let parts = Parts {
-            solver: Solver::new(&system, &pattern, &rows)?,
+            solver: Solver::new(&system, pattern, &rows)?,
             elimination,
             step: right_side.duplicate()?,
             local_step: vec![0.0; rows.len()],
@@ -154,24 +154,23 @@ impl CondensedSolve {
 
 impl Solver {
     /// For a pattern in local displacements, whose rows are given.
-    fn new(system: &System, pattern: &CondensedPattern, rows: &[i32]) -> petsc::Result<Self> {
+    fn new(system: &System, mut pattern: CondensedPattern, rows: &[i32]) -> petsc::Result<Self> {
         let symmetric = system.local().problem.friction_coefficient == 0.0;
         let mut free = options::get(PACKAGE.0)?.is_none_or(|package| package == PACKAGE.1);
         for name in CHOICES {
             free &= !options::is_given(name)?;
         }
-        if free && let Some(solver) = Substructures::new(system, pattern, symmetric)? {
+        if free && let Some(solver) = Substructures::new(system, &pattern, symmetric)? {
             return Ok(Self::Substructures(Box::new(solver)));
         }
-        let global = |local: &[i32]| -> Vec<i32> {
-            let row = |&i: &i32| usize::try_from(i).map_or(-1, |i| rows[i]);
-            local.iter().map(row).collect()
-        };
+        for index in pattern.rows.iter_mut().chain(&mut pattern.columns) {
+            *index = usize::try_from(*index).map_or(-1, |local| rows[local]);
+        }
         let matrix = Matrix::from_coo(
             system.comm(),
             system.owned_displacements(),
-            &global(&pattern.rows),
-            &global(&pattern.columns),
+            &pattern.rows,
+            &pattern.columns,
         )?;
         let solver = whole(system.comm(), &matrix, symmetric)?;
         Ok(Self::Whole(matrix, solver))
