@@ -40,11 +40,12 @@ fn the_model_is_told_and_drawn_and_nothing_else_is_written() {
         let sum = |column: usize| rows.iter().map(|row| row[column]).sum::<usize>();
         assert_eq!((sum(1), sum(4), sum(5)), (850, 2040, 9882));
         assert_eq!(sum(3) > 0, ranks > 1);
-        let files: Vec<_> = std::fs::read_dir(&folder)
+        let mut files: Vec<_> = std::fs::read_dir(&folder)
             .unwrap()
             .map(|entry| entry.unwrap().file_name().into_string().unwrap())
             .collect();
-        assert_eq!(files, ["model.svg"]);
+        files.sort();
+        assert_eq!(files, ["model.png", "model.svg"]);
         let sketch = std::fs::read_to_string(folder.join("model.svg")).unwrap();
         assert!(
             sketch.contains("punch, radius 23.5 mm") && sketch.contains("punch at full stroke")

@@ -20,7 +20,7 @@ const MEMORY_ALONE: f64 = 50e6;
 const MEMORY_AMONG_OTHERS: f64 = 60e6;
 const MEMORY_PER_UNKNOWN: f64 = 372.0;
 
-/// Shows the model and writes `model.svg`; nothing else is written. Collective.
+/// Shows the model and draws it as `model.svg` and `.png`; nothing else is written. Collective.
 ///
 /// # Errors
 /// If the mesh cannot be split or the sketch not be written.

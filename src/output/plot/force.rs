@@ -213,8 +213,8 @@ mod tests {
             points: vec![[0.5, 25.0, 1.0]],
         };
         let with = force_svg("nothing yet", &[], &reference).unwrap();
-        assert!(with.contains("somebody") && with.contains("with tolerance"));
+        assert!(with.contains("somebody") && with.contains("tested values"));
         let without = force_svg("nothing yet", &[], &ReferenceForce::default()).unwrap();
-        assert!(!without.contains("somebody") && !without.contains("tolerance"));
+        assert!(!without.contains("somebody") && !without.contains("tested values"));
     }
 }
