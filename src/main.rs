@@ -4,14 +4,14 @@ use std::fmt::Display;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
-use mpi::collective::SystemOperation;
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::{Communicator, CommunicatorCollectives};
+use mpi::traits::Communicator;
 use petsc::{Session, options};
 use ssnp155::case::{
     Case, ENVIRONMENT, OptionSource, arguments_as_text, check_arguments, check_environment,
     check_ranks, help_text,
 };
+use ssnp155::ranks::lowest_failing;
 use ssnp155::run::{Ending, conclude, simulate};
 
 /// Exit code of a run that did not finish, or whose verdicts do not hold.
@@ -70,16 +70,10 @@ fn open_session(args: &[String]) -> Result<Session, String> {
 
 /// The value if every rank has one; otherwise the lowest rank that failed says why. Collective.
 fn agree<T, E: Display>(world: &SimpleCommunicator, mine: Result<T, E>) -> Result<T, Refused> {
-    let vote = if mine.is_err() {
-        world.rank()
-    } else {
-        i32::MAX
-    };
-    let mut lowest = i32::MAX;
-    world.all_reduce_into(&vote, &mut lowest, SystemOperation::min());
+    let lowest = lowest_failing(world, mine.is_err());
     match mine {
-        Ok(value) if lowest == i32::MAX => Ok(value),
-        Err(error) if lowest == world.rank() => {
+        Ok(value) if lowest.is_none() => Ok(value),
+        Err(error) if lowest == Some(world.rank()) => {
             eprintln!("ssnp155: {error}");
             Err(Refused)
         }

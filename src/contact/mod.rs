@@ -5,9 +5,11 @@
 mod closest;
 mod law;
 mod rule;
+mod state;
 
 pub use closest::Drift;
 pub use law::{
     ContactLaw, ContactRows, ContactTangent, Friction, FrictionState, PointPosition, Traction,
 };
 pub use rule::{ContactLocation, ContactRule, ContactSample};
+pub use state::ContactState;

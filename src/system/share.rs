@@ -1,11 +1,10 @@
 //! What one rank found and all have to know.
 
-use mpi::collective::SystemOperation;
-use mpi::datatype::PartitionMut;
-use mpi::traits::{Communicator, CommunicatorCollectives, Root};
+use mpi::traits::{Communicator, Root};
 
 use super::System;
 use crate::mesh::SurfaceSide;
+use crate::ranks::{gather_lists, lowest_failing};
 
 /// An element that could not be evaluated, as every rank knows it.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,16 +33,7 @@ impl System {
     pub fn take_shared_failure(&self) -> Option<FailedElement> {
         let comm = self.comm();
         let mine = self.take_failure();
-        let vote = if mine.is_some() {
-            comm.rank()
-        } else {
-            i32::MAX
-        };
-        let mut lowest = i32::MAX;
-        comm.all_reduce_into(&vote, &mut lowest, SystemOperation::min());
-        if lowest == i32::MAX {
-            return None;
-        }
+        let lowest = lowest_failing(comm, mine.is_some())?;
         let root = comm.process_at_rank(lowest);
         let (mut numbers, mut words) = ([0.0; 3], Vec::new());
         if let (Some(mine), true) = (mine, comm.rank() == lowest) {
@@ -75,17 +65,7 @@ impl System {
                 [place[0], upper, f64::from(mark)]
             })
             .collect();
-        let mut counts = vec![0_i32; comm.size() as usize];
-        comm.all_gather_into(&(flat.len() as i32), &mut counts[..]);
-        let starts: Vec<i32> = counts
-            .iter()
-            .scan(0, |end, count| Some(std::mem::replace(end, *end + count)))
-            .collect();
-        let mut all = vec![0.0; counts.iter().sum::<i32>() as usize];
-        comm.all_gather_varcount_into(
-            &flat[..],
-            &mut PartitionMut::new(&mut all[..], counts, starts),
-        );
+        let all = gather_lists(comm, &flat);
         let mut places: Vec<_> = all
             .chunks_exact(3)
             .map(|values| ContactPlace {

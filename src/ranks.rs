@@ -1,0 +1,40 @@
+//! What ranks have to settle between them: who failed first, and lists of different lengths.
+
+use mpi::collective::SystemOperation;
+use mpi::datatype::{Equivalence, PartitionMut};
+use mpi::traits::{Communicator, CommunicatorCollectives, Root};
+
+/// The lowest rank on which something failed, the same on every rank; none if all went well.
+/// Collective.
+pub fn lowest_failing(comm: &impl Communicator, failed: bool) -> Option<i32> {
+    let vote = if failed { comm.rank() } else { i32::MAX };
+    let mut lowest = i32::MAX;
+    comm.all_reduce_into(&vote, &mut lowest, SystemOperation::min());
+    (lowest < i32::MAX).then_some(lowest)
+}
+
+/// The bytes that rank `root` has, on every rank; what the other ranks pass is ignored. Collective.
+pub fn broadcast_bytes(comm: &impl Communicator, root: i32, mut bytes: Vec<u8>) -> Vec<u8> {
+    let root = comm.process_at_rank(root);
+    let mut length = bytes.len() as u64;
+    root.broadcast_into(&mut length);
+    bytes.resize(length as usize, 0);
+    root.broadcast_into(&mut bytes[..]);
+    bytes
+}
+
+/// The lists of all ranks, one after the other in the order of the ranks, on every rank. Collective.
+pub fn gather_lists<T: Equivalence + Clone + Default>(
+    comm: &impl Communicator,
+    mine: &[T],
+) -> Vec<T> {
+    let mut counts = vec![0_i32; comm.size().unsigned_abs() as usize];
+    comm.all_gather_into(&(mine.len() as i32), &mut counts[..]);
+    let starts: Vec<i32> = counts
+        .iter()
+        .scan(0, |end, count| Some(std::mem::replace(end, *end + count)))
+        .collect();
+    let mut all = vec![T::default(); counts.iter().sum::<i32>().unsigned_abs() as usize];
+    comm.all_gather_varcount_into(mine, &mut PartitionMut::new(&mut all[..], counts, starts));
+    all
+}
