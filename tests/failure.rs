@@ -148,7 +148,7 @@ fn an_element_that_turns_over_is_named() {
         assert_eq!(ended.code, Some(1), "{}", ended.text());
         let seen = summary(&folder)["diagnosis"]["observed"][0].to_string();
         assert!(
-            seen.contains("turned over") && seen.contains("along the sheet"),
+            seen.contains("determinant") && seen.contains("along the sheet"),
             "{seen}"
         );
     }
