@@ -36,11 +36,13 @@ pub struct PlaneTensor {
 
 impl SymmetricMatrix {
     /// As a matrix by rows.
+    #[inline]
     pub fn rows(&self) -> Matrix {
         [[self.xx, self.xy], [self.xy, self.yy]]
     }
 
     /// The product with a vector.
+    #[inline]
     pub fn times(&self, v: Vector) -> Vector {
         [
             self.xx * v[0] + self.xy * v[1],
@@ -59,11 +61,13 @@ impl PlaneTensor {
     };
 
     /// The components in the one order of arrays and files: xx, yy, zz, xy.
+    #[inline]
     pub fn components(&self) -> [f64; 4] {
         [self.xx, self.yy, self.zz, self.xy]
     }
 
     /// The in-plane part.
+    #[inline]
     pub fn in_plane(&self) -> SymmetricMatrix {
         SymmetricMatrix {
             xx: self.xx,
@@ -73,6 +77,7 @@ impl PlaneTensor {
     }
 
     /// The same operation on every component.
+    #[inline]
     #[must_use]
     pub fn map(self, operation: impl Fn(f64) -> f64) -> Self {
         Self {
@@ -85,21 +90,25 @@ impl PlaneTensor {
 }
 
 /// Scalar product.
+#[inline]
 pub fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
 /// Determinant of a matrix.
+#[inline]
 pub fn determinant(m: &Matrix) -> f64 {
     m[0][0] * m[1][1] - m[0][1] * m[1][0]
 }
 
 /// Σ weight · vector over the three nodes of an edge.
+#[inline]
 pub fn interpolate(weights: [f64; 3], nodes: &[Vector; 3]) -> Vector {
     [0, 1].map(|k| (0..3).map(|a| weights[a] * nodes[a][k]).sum())
 }
 
 /// m s mᵀ of a symmetric matrix s.
+#[inline]
 pub fn congruence(m: &Matrix, s: &SymmetricMatrix) -> SymmetricMatrix {
     let [first, second] = m.map(|row| s.times(row));
     SymmetricMatrix {

@@ -20,6 +20,7 @@ pub(super) struct PrincipalStrains {
 impl PrincipalStrains {
     /// Of the tensor `b` in the plane and `b_zz` normal to it. Where `b` is not positive definite to rounding, strains
     /// are infinite or not a number.
+    #[inline]
     pub fn of(b: SymmetricMatrix, b_zz: f64) -> Self {
         let half_sum = 0.5 * (b.xx + b.yy);
         let half_difference = 0.5 * (b.xx - b.yy);
@@ -49,6 +50,7 @@ impl PrincipalStrains {
     }
 
     /// The tensor with these principal values in the same axes.
+    #[inline]
     pub fn tensor(&self, values: [f64; 3]) -> PlaneTensor {
         let centre = 0.5 * (values[0] + values[1]);
         let half = 0.5 * (values[0] - values[1]);
@@ -61,6 +63,7 @@ impl PrincipalStrains {
     }
 
     /// The tangent given by `normal` and `shear` moduli in the principal axes, in x and y (order xx, yy, xy).
+    #[inline]
     pub fn rotate_tangent(&self, normal: [[f64; 2]; 2], shear: f64) -> [[f64; 3]; 3] {
         let [cos, sin] = self.axis;
         // Strains in the principal axes from xx, yy, xy (engineering).

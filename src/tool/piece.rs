@@ -96,6 +96,7 @@ impl Piece {
     }
 
     /// Length, mm.
+    #[inline]
     pub(super) fn length(&self) -> f64 {
         match *self {
             Piece::Segment { start, end } => (end[0] - start[0]).hypot(end[1] - start[1]),
@@ -129,6 +130,7 @@ impl Piece {
 
     /// Signed distance if the foot point lies within the piece. `open_start` and `open_end` let a
     /// segment go on beyond its ends.
+    #[inline]
     pub(super) fn distance(&self, x: Vector, open_start: bool, open_end: bool) -> Option<Distance> {
         match *self {
             Piece::Segment { start, end } => {
@@ -212,6 +214,7 @@ impl End {
     /// Where an end point is the closest point of the profile, the sum of the normals of the pieces that meet there tells the
     /// side, at a corner as sharp as any (the pseudonormal of Bærentzen and Aanæs 2005, IEEE Trans. Vis. Comput. Graph. 11,
     /// 243-253, with the equal angles of the plane); the normal of one piece alone does not.
+    #[inline]
     pub(super) fn distance(&self, x: Vector) -> Distance {
         let away = [x[0] - self.x[0], x[1] - self.x[1]];
         let r = dot(away, away).sqrt().max(CENTRE_RADIUS);
@@ -234,6 +237,7 @@ impl End {
 
 /// Distance and arc length for a point at radius `r` in direction `radial` from the centre of an
 /// arc walked with sign `turn`.
+#[inline]
 fn arc_distance(radial: Vector, r: f64, radius: f64, turn: f64, arc: f64) -> Distance {
     // Convex (turn = -1): r - radius; concave: radius - r.
     let gradient = [-turn * radial[0], -turn * radial[1]];
@@ -256,6 +260,7 @@ fn arc_distance(radial: Vector, r: f64, radius: f64, turn: f64, arc: f64) -> Dis
 }
 
 /// `scale` times (I - n n).
+#[inline]
 fn tangential_projector(n: Vector, scale: f64) -> SymmetricMatrix {
     SymmetricMatrix {
         xx: scale * n[1] * n[1],

@@ -109,6 +109,7 @@ macro_rules! registry {
 
         impl Hardening {
             /// Flow stress and slope (both MPa) at the equivalent plastic strain `p` >= 0; at a kink the slope beyond it.
+            #[inline]
             pub fn yield_stress(&self, p: f64) -> (f64, f64) {
                 match self {
                     $(Self::$law(law) => law.flow_stress(p),)*
@@ -128,6 +129,7 @@ macro_rules! registry {
             ///
             /// `q_trial`: equivalent trial stress, MPa; `p_n` >= 0: equivalent plastic strain before; `three_g`: three
             /// times the shear modulus, MPa, > 0. A NaN comes out as NaN.
+            #[inline]
             pub fn return_map(&self, q_trial: f64, p_n: f64, three_g: f64) -> PlasticStep {
                 match self {
                     $(Self::$law(law) => law.return_map(q_trial, p_n, three_g),)*

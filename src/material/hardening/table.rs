@@ -56,6 +56,7 @@ struct Segment {
 
 impl Segment {
     /// Flow stress and slope at `p` on the line through the segment.
+    #[inline]
     fn at(&self, p: f64) -> (f64, f64) {
         (self.stress + self.slope * (p - self.start), self.slope)
     }
@@ -155,6 +156,7 @@ impl Table {
     }
 
     /// Index of the segment that holds `p`; at a kink the one that begins there.
+    #[inline]
     fn segment_at(&self, p: f64) -> usize {
         self.segments
             .partition_point(|segment| segment.start <= p)
@@ -180,6 +182,7 @@ impl Law for Table {
     }
 
     /// Exact: the segments are walked one by one until the return ends within one.
+    #[inline]
     fn return_map(&self, q_trial: f64, p_n: f64, three_g: f64) -> PlasticStep {
         let mut index = self.segment_at(p_n);
         let (yield_stress, slope) = self.segments[index].at(p_n);
