@@ -5,13 +5,12 @@ mod common;
 
 use std::env;
 use std::process::{Command, ExitCode};
-use std::rc::Rc;
 
 use common::{Noise, small_problem};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 use petsc::{Ksp, MatrixOption, Session, Vector, VectorRef, options};
-use ssnp155::system::{CondensedSolve, System};
+use ssnp155::system::{CondensedMethod, CondensedSolve, History, SolverChoice, System};
 
 const WORKER: &str = "--worker";
 
@@ -61,12 +60,8 @@ fn worker() {
             options::set(&format!("whole_{name}"), value).unwrap();
         }
         for friction in [0.0, 0.2] {
-            for solver in ["default", "lu"] {
-                if solver != "default" {
-                    options::set("condensed_pc_type", solver).unwrap();
-                }
-                agrees(&world, friction);
-                options::clear("condensed_pc_type").unwrap();
+            for method in [CondensedMethod::Substructures, CondensedMethod::Whole] {
+                agrees(&world, friction, method);
             }
         }
     });
@@ -76,10 +71,11 @@ fn worker() {
 }
 
 /// One Jacobian with points of every kind, two active sets with one analysis.
-fn agrees(world: &SimpleCommunicator, friction: f64) {
+fn agrees(world: &SimpleCommunicator, friction: f64, method: CondensedMethod) {
     let mut problem = small_problem(12, 2);
     problem.friction_coefficient = friction;
-    let system = Rc::new(System::new(problem, world.duplicate()).unwrap());
+    let system = System::new(problem, world.duplicate()).unwrap();
+    let history = History::virgin(system.local());
     let mut noise = Noise::new(17 + world.rank() as u64);
     let owned = system.owned_displacements();
 
@@ -88,8 +84,15 @@ fn agrees(world: &SimpleCommunicator, friction: f64) {
         *value = if i < owned { 1e-4 } else { 1e-5 } * noise.next();
     }
     let mut jacobian = system.matrix().unwrap();
-    assert!(system.jacobian(30.0, &unknowns, 2.5, &mut jacobian).is_ok());
-    let condensed = CondensedSolve::new(Rc::clone(&system)).unwrap();
+    let mut entries = system.jacobian_entries();
+    let evaluated = system.jacobian(&history, 30.0, &unknowns, 2.5, &mut entries);
+    assert!(evaluated.is_ok());
+    jacobian.set_values_coo(entries.values()).unwrap();
+    let choice = SolverChoice {
+        method,
+        options_prefix: "condensed_",
+    };
+    let condensed = CondensedSolve::new(&system, choice).unwrap();
 
     for every in [3, 4] {
         let mut right_side = system.vector().unwrap();
@@ -122,12 +125,15 @@ fn agrees(world: &SimpleCommunicator, friction: f64) {
 
         let reduced_right_side = reduced(world, &right_side, &is_active);
         let mut step = reduced_right_side.duplicate().unwrap();
-        assert!(condensed.factor(&active).unwrap());
+        assert!(condensed.factor(&entries, &active).unwrap());
         condensed.solve(&reduced_right_side, &mut step).unwrap();
         let expected = reduced(world, &whole, &is_active);
         step.axpy(-1.0, &expected).unwrap();
         let error = step.norm2().unwrap() / expected.norm2().unwrap();
-        assert!(error < 1e-10, "friction {friction}: {error:.1e}");
+        assert!(
+            error < 1e-10,
+            "friction {friction}, {method:?}: {error:.1e}"
+        );
     }
 }
 

@@ -18,8 +18,7 @@ use mpi::traits::{Communicator, CommunicatorCollectives};
 use petsc::{FactorKind, FactorStatus, Factorization, Matrix, Vector};
 
 use super::System;
-use super::condensed::PREFIX;
-use super::elimination::CondensedPattern;
+use super::condensation::CondensedPattern;
 
 /// Beyond so many shared unknowns the dense S costs more than it saves.
 const MOST_SHARED: usize = 2000;
@@ -65,7 +64,8 @@ impl Substructures {
     pub(super) fn new(
         system: &System,
         pattern: &CondensedPattern,
-        symmetric: bool,
+        kind: FactorKind,
+        options_prefix: &str,
     ) -> petsc::Result<Option<Self>> {
         let (comm, local) = (system.comm(), system.local());
         let rank = comm.rank() as usize;
@@ -88,28 +88,25 @@ impl Substructures {
         if unfit > 0 {
             return Ok(None);
         }
-        let kind = if symmetric {
-            FactorKind::Symmetric
-        } else {
-            FactorKind::General
-        };
         let alone = SimpleCommunicator::self_comm();
         let mut matrix = Matrix::from_coo(&alone, all, &pattern.rows, &pattern.columns)?;
         // The analysis wants entries, and must not depend on which: a restart begins with others.
         matrix.set_values_coo(&vec![1.0; pattern.rows.len()])?;
         let kept: Vec<i32> = shared.iter().map(|shared| shared.local as i32).collect();
-        let inner = Factorization::keeping(&matrix, kind, &kept, PREFIX)?;
+        let inner = Factorization::keeping(&matrix, kind, &kept, options_prefix)?;
         let grid = |step: fn(usize, usize) -> usize| -> Vec<i32> {
             (0..count * count).map(|k| step(k, count) as i32).collect()
         };
         let mut schur_matrix =
             Matrix::from_coo(&alone, count, &grid(|k, n| k / n), &grid(|k, n| k % n))?;
         schur_matrix.set_values_coo(&vec![1.0; count * count])?;
-        let first = system.numbering.rank_displacements[rank];
+        let first = system.numbering().rank_displacements[rank];
         let owned = (0..all)
             .filter(|unknown| local.owned[unknown / 2])
             .map(|unknown| {
-                let row = system.numbering.displacement_row(local.nodes[unknown / 2]);
+                let row = system
+                    .numbering()
+                    .displacement_row(local.nodes[unknown / 2]);
                 (unknown, row + unknown % 2 - first)
             })
             .collect();
@@ -225,9 +222,9 @@ fn clear(vector: &mut Vector, shared: &[Shared]) -> petsc::Result<()> {
 fn shared_nodes(system: &System) -> Vec<Option<usize>> {
     let local = system.local();
     let mesh = &local.problem.mesh;
-    let owner = &system.numbering.node_owner;
+    let owner = &system.numbering().node_owner;
     let mut shared = vec![false; mesh.nodes.len()];
-    for (nodes, &rank) in mesh.elements.iter().zip(&system.parts) {
+    for (nodes, &rank) in mesh.elements.iter().zip(system.partition()) {
         for &node in nodes {
             shared[node] |= owner[node] != rank;
         }

@@ -12,7 +12,7 @@ use ssnp155::element::Quadrature;
 use ssnp155::mesh::SheetMesh;
 use ssnp155::run::StaticPath;
 use ssnp155::system::{
-    ContactPointSample, Factor, Measures, NodalValue, NodeSample, Problem, System, Tool,
+    ContactPointSample, Factor, History, Measures, NodalValue, NodeSample, Problem, System, Tool,
 };
 use ssnp155::tool::{Motion, Piece, Profile};
 
@@ -181,7 +181,7 @@ impl Statics {
         let system = Rc::new(System::new(problem, world.duplicate())?);
         let start = start_unknowns(&system, touching)?;
         Ok(Self {
-            path: StaticPath::new(Rc::clone(&system), start)?,
+            path: StaticPath::new(Rc::clone(&system), History::virgin(system.local()), start)?,
             system,
             time: 0.0,
         })
@@ -214,7 +214,7 @@ impl Statics {
         let values = self.values()?;
         let mut forces = vec![0.0; values.len()];
         let local = self.system.local();
-        local.add_internal_forces(&values, &mut forces)?;
+        local.add_internal_forces(&self.path.history(), &values, &mut forces)?;
         let young = local.problem().young_modulus;
         let count = local.problem().mesh.nodes.len();
         Ok((0..count)
@@ -225,20 +225,21 @@ impl Statics {
     /// Stresses and more at the nodes.
     pub fn samples(&self) -> Result<Vec<NodeSample>> {
         let values = self.values()?;
-        let sampler = self.system.local().field_sampler();
-        Ok(self.system.node_samples(&sampler, self.time, &values)?)
+        let history = self.path.history();
+        Ok(self.system.node_samples(&history, self.time, &values)?)
     }
 
     /// The contact points.
     pub fn contacts(&self) -> Result<Vec<ContactPointSample>> {
         let values = self.values()?;
-        Ok(self.system.local().contact_points(self.time, &values))
+        let history = self.path.history();
+        let local = self.system.local();
+        Ok(local.contact_points(&history, self.time, &values))
     }
 
     pub fn measures(&self) -> Result<Measures> {
-        Ok(self
-            .system
-            .measures(self.time, self.path.unknowns(), None)?)
+        let (history, unknowns) = (self.path.history(), self.path.unknowns());
+        Ok(self.system.measures(&history, self.time, unknowns, None)?)
     }
 }
 
@@ -249,7 +250,8 @@ pub fn start_unknowns(system: &System, touching: Touching) -> Result<Vector> {
     let mut unknowns = system.vector()?;
     unknowns.set_all(0.0)?;
     let local = system.local();
-    let points = local.contact_points(0.0, &vec![0.0; local.unknown_count()]);
+    let still = vec![0.0; local.unknown_count()];
+    let points = local.contact_points(&History::virgin(local), 0.0, &still);
     let closed = |point: &ContactPointSample| point.gap < 1e-6;
     let innermost = points
         .iter()
@@ -267,6 +269,5 @@ pub fn start_unknowns(system: &System, touching: Touching) -> Result<Vector> {
         write[first + 2 * k + 1] = if closed(point) { 0.0 } else { point.gap };
     }
     drop(write);
-    drop(local);
     Ok(unknowns)
 }

@@ -13,7 +13,7 @@ use mpi::traits::{Communicator, Root};
 use super::RunError;
 use crate::case::{Case, Difference, Restart};
 use crate::output::{Arrays, OutputError, agree, checkpoint};
-use crate::system::System;
+use crate::system::{History, System};
 
 pub(super) use state::RunState;
 
@@ -45,11 +45,13 @@ impl Resumed {
         self.state.time
     }
 
-    /// Gives the system the history of its material and contact points.
-    pub(super) fn restore_history(&self, system: &System) -> Result<(), OutputError> {
-        let restored = system.restore(&self.state.snapshot);
-        let path = self.path.clone();
-        restored.map_err(|reason| OutputError::Checkpoint { path, reason })
+    /// The history of the system's material and contact points.
+    pub(super) fn history(&self, system: &System) -> Result<History, OutputError> {
+        let restored = self.state.snapshot.restore(system);
+        restored.map_err(|error| OutputError::Checkpoint {
+            path: self.path.clone(),
+            reason: error.to_string(),
+        })
     }
 
     /// For each of this rank's nodes and of its contact points, the row that has it in the field files so far.

@@ -7,7 +7,7 @@ use petsc::SnesReason;
 use super::solve_watch::{Course, Flip, SolveWatch};
 use crate::mesh::SurfaceSide;
 use crate::output::number;
-use crate::system::{ContactPlace, FailedElement, System};
+use crate::system::{ContactPlace, ElementFailure, FailedElement, System};
 
 /// A Newton solve that did not converge. The same on every rank.
 #[derive(Clone, Debug)]
@@ -39,6 +39,7 @@ impl Refusal {
         reason: SnesReason,
         iterations: u32,
         tolerance: f64,
+        failure: Option<ElementFailure>,
     ) -> Self {
         const MARKS: [Flip; 2] = [Flip::Closing, Flip::Slipping];
         let marked = |flip| u8::from(flip == Flip::Slipping);
@@ -58,7 +59,7 @@ impl Refusal {
                 .into_iter()
                 .map(|place| (place, MARKS[usize::from(place.mark)]))
                 .collect(),
-            element: system.take_shared_failure(),
+            element: FailedElement::over_ranks(system.comm(), failure),
         }
     }
 

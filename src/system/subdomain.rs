@@ -1,4 +1,4 @@
-//! One rank's share of the problem: its elements, the nodes they touch, its contact points.
+//! One rank's part of the problem: its elements, the nodes they touch, its contact points.
 //!
 //! Local unknowns are x and y of each local node (node by node, owned and foreign), then multiplier
 //! and gap of each local contact point.
@@ -6,13 +6,13 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::problem::{Factor, NodalValue, Tool};
-use super::{Numbering, Problem, UNKNOWNS_PER_POINT};
+use super::error::ElementFailure;
+use super::numbering::{Numbering, UNKNOWNS_PER_POINT};
+use super::problem::{Factor, NodalValue, Problem, Tool};
 use crate::contact::{
     ContactLaw, ContactSample, ContactState, Friction, FrictionState, PointPosition,
 };
-use crate::element::Quad8;
-use crate::material::PointState;
+use crate::element::{Quad8, SinglePointFailure};
 use crate::mesh::{Partition, SurfaceSide};
 
 /// Committed friction this close to its limit, as a share of it, is at the limit.
@@ -33,28 +33,38 @@ pub(super) struct LocalContact {
     pub length: f64,
     /// Whether it is the first point of its edge.
     pub first_of_edge: bool,
-    /// Committed friction.
-    pub state: FrictionState,
 }
 
 impl LocalContact {
     /// Position of the point and its distance to its tool at time `t` (ms), for the current positions
     /// of its edge's nodes.
-    pub fn position(&self, nodes: &[[f64; 2]; 3], t: f64) -> PointPosition {
-        self.law.position(
-            nodes,
-            &self.tool.profile,
-            self.tool.motion.shift(t),
-            &self.state,
-        )
+    pub fn position(
+        &self,
+        nodes: &[[f64; 2]; 3],
+        t: f64,
+        committed: &FrictionState,
+    ) -> PointPosition {
+        let shift = self.tool.motion.shift(t);
+        self.law
+            .position(nodes, &self.tool.profile, shift, committed)
+    }
+
+    /// Where it lies between these positions of its edge's nodes; a moving point in its middle position.
+    pub fn reference(&self, nodes: &[[f64; 2]; 3]) -> [f64; 2] {
+        interpolate(&self.law.shape, nodes)
     }
 
     /// Its state at the accepted multiplier and gap (mm), with the committed friction.
-    pub fn committed_state(&self, multiplier: f64, gap: f64) -> ContactState {
+    pub fn committed_state(
+        &self,
+        multiplier: f64,
+        gap: f64,
+        committed: &FrictionState,
+    ) -> ContactState {
         if gap > 0.0 || multiplier <= 0.0 {
             return ContactState::Open;
         }
-        let traction = self.state.traction;
+        let traction = committed.traction;
         match self.law.friction {
             Some(Friction { coefficient, .. })
                 if traction.abs() >= coefficient * multiplier * (1.0 - AT_LIMIT) =>
@@ -64,6 +74,11 @@ impl LocalContact {
             _ => ContactState::Stick,
         }
     }
+}
+
+/// The point of an edge with these shape functions.
+pub(super) fn interpolate(shape: &[f64; 3], nodes: &[[f64; 2]; 3]) -> [f64; 2] {
+    [0, 1].map(|k| (0..3).map(|a| shape[a] * nodes[a][k]).sum())
 }
 
 /// A prescribed displacement or a load at a local unknown.
@@ -77,9 +92,9 @@ pub(super) struct LocalValue {
     pub factor: Factor,
 }
 
-/// This rank's share of the problem and the committed history of its material points.
+/// This rank's part of the problem. It does not change.
 #[derive(Debug)]
-pub struct LocalSystem {
+pub struct Subdomain {
     pub(super) problem: Problem,
     /// Mesh number of each local node.
     pub(super) nodes: Vec<usize>,
@@ -99,14 +114,10 @@ pub struct LocalSystem {
     pub(super) loads: Vec<LocalValue>,
     /// Global row of each local unknown.
     pub(super) rows: Vec<i32>,
-    /// Committed states, Gauss point by Gauss point, element by element.
-    pub(super) states: Vec<PointState>,
-    /// Committed work of friction, mJ per mm of width.
-    pub(super) friction_work: f64,
 }
 
-impl LocalSystem {
-    /// The share of `rank`.
+impl Subdomain {
+    /// The part of `rank`.
     pub fn new(
         problem: Problem,
         partition: &Partition,
@@ -117,35 +128,20 @@ impl LocalSystem {
         let elements: Vec<usize> = (0..mesh.elements.len())
             .filter(|&e| partition[e] == rank)
             .collect();
-        let mut nodes: Vec<usize> = elements
-            .iter()
-            .flat_map(|&e| mesh.elements[e].iter().copied())
-            .collect();
-        nodes.sort_unstable();
-        nodes.dedup();
+        let nodes = nodes_of(elements.iter().map(|&e| &mesh.elements[e]));
         let local_of: HashMap<usize, usize> = nodes
             .iter()
             .enumerate()
             .map(|(local, &node)| (node, local))
             .collect();
-        let connectivity: Vec<[usize; 8]> = elements
+        let owned: Vec<bool> = nodes
             .iter()
-            .map(|&e| mesh.elements[e].map(|node| local_of[&node]))
+            .map(|&n| numbering.node_owner[n] == rank)
             .collect();
-        let coordinates: Vec<[f64; 2]> = nodes.iter().map(|&n| mesh.nodes[n]).collect();
-        let kernels: Vec<Quad8> = elements
-            .iter()
-            .map(|&e| Quad8::new(&mesh.elements[e].map(|n| mesh.nodes[n]), problem.quadrature))
-            .collect();
-
         let mut rows: Vec<i32> = nodes
             .iter()
-            .flat_map(|&n| {
-                [
-                    numbering.node_row[n] as i32,
-                    numbering.node_row[n] as i32 + 1,
-                ]
-            })
+            .map(|&n| numbering.node_row[n] as i32)
+            .flat_map(|row| [row, row + 1])
             .collect();
         let mut contacts = Vec::new();
         for (index, edge) in mesh.surface.iter().enumerate() {
@@ -158,33 +154,20 @@ impl LocalSystem {
             let edge_nodes = mesh.edge_nodes(edge);
             let [left, right] = [mesh.nodes[edge_nodes[0]], mesh.nodes[edge_nodes[1]]];
             let edge_length = (right[0] - left[0]).hypot(right[1] - left[1]);
+            let edge_nodes = edge_nodes.map(|n| local_of[&n]);
             for (k, sample) in problem.contact_samples(index).iter().enumerate() {
-                let length = sample.weight * edge_length;
                 contacts.push(LocalContact {
                     side: edge.side,
                     tool: Arc::clone(tool),
-                    nodes: edge_nodes.map(|n| local_of[&n]),
-                    state: starting_friction(&problem, tool, edge_nodes, sample),
-                    law: ContactLaw {
-                        shape: sample.shape,
-                        moves_on: sample.moves.then_some(edge_length),
-                        give: problem.contact_compliance * problem.young_modulus / length,
-                        friction: (problem.friction_coefficient > 0.0).then(|| Friction {
-                            coefficient: problem.friction_coefficient,
-                            give: problem.friction_compliance * problem.young_modulus / length,
-                        }),
-                    },
-                    length,
+                    nodes: edge_nodes,
+                    law: contact_law(&problem, sample, edge_length),
+                    length: sample.weight * edge_length,
                     first_of_edge: k == 0,
                 });
-                let row = numbering.edge_row[index] + UNKNOWNS_PER_POINT * k;
-                rows.extend([row as i32, row as i32 + 1]);
+                let row = (numbering.edge_row[index] + UNKNOWNS_PER_POINT * k) as i32;
+                rows.extend([row, row + 1]);
             }
         }
-        let owned: Vec<bool> = nodes
-            .iter()
-            .map(|&n| numbering.node_owner[n] == rank)
-            .collect();
         let local_value = |value: &NodalValue| {
             let local = local_of.get(&value.node)?;
             Some(LocalValue {
@@ -193,32 +176,29 @@ impl LocalSystem {
                 factor: value.factor.clone(),
             })
         };
-        let supports = problem.supports.iter().filter_map(local_value).collect();
-        let loads = problem
-            .loads
-            .iter()
-            .filter_map(local_value)
-            .filter(|load| owned[load.unknown / 2])
-            .collect();
-        let states = vec![PointState::VIRGIN; elements.len() * problem.quadrature.point_count()];
+        let loads = problem.loads.iter().filter_map(local_value);
         Self {
+            coordinates: nodes.iter().map(|&n| mesh.nodes[n]).collect(),
+            connectivity: elements
+                .iter()
+                .map(|&e| mesh.elements[e].map(|node| local_of[&node]))
+                .collect(),
+            kernels: elements
+                .iter()
+                .map(|&e| Quad8::new(&mesh.elements[e].map(|n| mesh.nodes[n]), problem.quadrature))
+                .collect(),
+            supports: problem.supports.iter().filter_map(local_value).collect(),
+            loads: loads.filter(|load| owned[load.unknown / 2]).collect(),
             owned,
-            supports,
-            loads,
-            friction_work: 0.0,
             nodes,
-            coordinates,
             elements,
-            connectivity,
-            kernels,
             contacts,
             rows,
-            states,
             problem,
         }
     }
 
-    /// The problem.
+    /// The problem, the same on every rank.
     pub fn problem(&self) -> &Problem {
         &self.problem
     }
@@ -231,6 +211,27 @@ impl LocalSystem {
     /// Number of local unknowns.
     pub fn unknown_count(&self) -> usize {
         self.rows.len()
+    }
+
+    /// Reference coordinates of the local nodes, mm.
+    pub fn node_coordinates(&self) -> &[[f64; 2]] {
+        &self.coordinates
+    }
+
+    /// Local nodes of the local elements, in VTK's order.
+    pub fn element_nodes(&self) -> &[[usize; 8]] {
+        &self.connectivity
+    }
+
+    /// Places of this rank's contact points on the undeformed sheet, mm; of moving points the middles of their edges.
+    pub fn contact_references(&self) -> Vec<[f64; 2]> {
+        let place = |contact| self.contact_reference(contact);
+        self.contacts.iter().map(place).collect()
+    }
+
+    /// Place of a contact point on the undeformed sheet, mm.
+    pub(super) fn contact_reference(&self, contact: &LocalContact) -> [f64; 2] {
+        contact.reference(&contact.nodes.map(|n| self.coordinates[n]))
     }
 
     /// Local number of the multiplier of contact point `point`; the gap follows.
@@ -251,25 +252,42 @@ impl LocalSystem {
         })
     }
 
-    /// Committed states of a local element.
-    pub(super) fn element_states(&self, element: usize) -> &[PointState] {
-        let count = self.problem.quadrature.point_count();
-        &self.states[count * element..count * (element + 1)]
+    /// What is wrong with a local element, in numbers of the mesh.
+    pub(super) fn element_failure(
+        &self,
+        element: usize,
+        u: &[f64],
+        cause: SinglePointFailure,
+    ) -> ElementFailure {
+        let corner = self.connectivity[element][0];
+        let [x, y] = self.coordinates[corner];
+        ElementFailure {
+            element: self.elements[element],
+            position: [x + u[2 * corner], y + u[2 * corner + 1]],
+            cause,
+        }
     }
 }
 
-/// Friction before anything has moved: none, at the foot point of the point's first position.
-fn starting_friction(
-    problem: &Problem,
-    tool: &Tool,
-    edge_nodes: [usize; 3],
-    sample: &ContactSample,
-) -> FrictionState {
-    let nodes = edge_nodes.map(|n| problem.mesh.nodes[n]);
-    let x = [0, 1].map(|k| (0..3).map(|a| sample.shape[a] * nodes[a][k]).sum());
-    FrictionState {
-        traction: 0.0,
-        arc_length: tool.profile.distance(x).arc_length,
-        nodes,
+/// The nodes of some elements, ascending, each once.
+fn nodes_of<'a>(elements: impl Iterator<Item = &'a [usize; 8]>) -> Vec<usize> {
+    let mut nodes: Vec<usize> = elements.flatten().copied().collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}
+
+/// The constants of a contact point on an edge of this length, mm.
+fn contact_law(problem: &Problem, sample: &ContactSample, edge_length: f64) -> ContactLaw {
+    let length = sample.weight * edge_length;
+    let friction = (problem.friction_coefficient > 0.0).then(|| Friction {
+        coefficient: problem.friction_coefficient,
+        give: problem.friction_compliance * problem.young_modulus / length,
+    });
+    ContactLaw {
+        shape: sample.shape,
+        moves_on: sample.moves.then_some(edge_length),
+        give: problem.contact_compliance * problem.young_modulus / length,
+        friction,
     }
 }
