@@ -2,71 +2,32 @@
 //! mpirun.
 
 mod common;
+mod worker;
 
-use std::env;
-use std::process::{Command, ExitCode};
+use std::process::ExitCode;
 
 use common::{Noise, small_problem};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
-use petsc::{Ksp, MatrixOption, Session, Vector, VectorRef, options};
+use petsc::{Ksp, MatrixOption, Vector, VectorRef, options};
 use ssnp155::system::{CondensedMethod, CondensedSolve, History, SolverChoice, System};
 
-const WORKER: &str = "--worker";
-
 fn main() -> ExitCode {
-    if env::args().any(|arg| arg == WORKER) {
-        worker();
-        return ExitCode::SUCCESS;
-    }
-    let mut held = true;
-    for ranks in ["1", "2", "3"] {
-        let status = Command::new("mpirun")
-            .args(["--timeout", "120", "-n", ranks])
-            .arg(env::current_exe().unwrap())
-            .arg(WORKER)
-            .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
-            .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
-            .env("OMPI_MCA_hwloc_base_binding_policy", "none")
-            .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
-            .env("OMPI_MCA_btl_vader_single_copy_mechanism", "none")
-            .env("OPENBLAS_NUM_THREADS", "1")
-            .status()
-            .unwrap();
-        println!(
-            "test the_condensed_solve_is_petsc_s_on_{ranks}_ranks ... {}",
-            if status.success() { "ok" } else { "FAILED" }
-        );
-        held &= status.success();
-    }
-    if held {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    }
+    worker::on_ranks("the_condensed_solve_is_petsc_s", &[1, 2, 3], compare)
 }
 
-fn worker() {
-    let (universe, _) = mpi::initialize_with_threading(mpi::Threading::Funneled).unwrap();
-    let world = universe.world();
-    // A rank that fails must not leave the others waiting.
-    let passed = std::panic::catch_unwind(|| {
-        let _session = Session::new(&env::args().take(1).collect::<Vec<_>>()).unwrap();
-        for (name, value) in [
-            ("ksp_type", "preonly"),
-            ("pc_type", "lu"),
-            ("pc_factor_mat_solver_type", "mumps"),
-        ] {
-            options::set(&format!("whole_{name}"), value).unwrap();
+fn compare(world: &SimpleCommunicator) {
+    for (name, value) in [
+        ("ksp_type", "preonly"),
+        ("pc_type", "lu"),
+        ("pc_factor_mat_solver_type", "mumps"),
+    ] {
+        options::set(&format!("whole_{name}"), value).unwrap();
+    }
+    for friction in [0.0, 0.2] {
+        for method in [CondensedMethod::Substructures, CondensedMethod::Whole] {
+            agrees(world, friction, method);
         }
-        for friction in [0.0, 0.2] {
-            for method in [CondensedMethod::Substructures, CondensedMethod::Whole] {
-                agrees(&world, friction, method);
-            }
-        }
-    });
-    if passed.is_err() {
-        world.abort(1);
     }
 }
 
