@@ -4,6 +4,7 @@
 
 mod checkpoint;
 mod conclusion;
+mod counts;
 mod diagnosis;
 mod dry_run;
 mod ledger;
@@ -27,11 +28,12 @@ use petsc::{CallbackError, TsReason};
 
 pub use checkpoint::{RestartError, Resumed};
 pub use conclusion::{Ending, conclude};
+pub use counts::Counts;
 pub use diagnosis::{Course, Flip, Refusal};
 pub use ledger::{Ledger, StepEffort};
 pub use newton::Damping;
 pub use recorder::Recorder;
-pub use simulation::{Counts, Interruption};
+pub use simulation::Interruption;
 pub use springback::Springback;
 pub use static_path::StaticPath;
 pub use step_size::StepControl;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::super::simulation::Counts;
+use super::super::counts::Counts;
 use super::super::springback::Springback;
 use crate::output::{Arrays, OutputError};
 use crate::system::Snapshot;

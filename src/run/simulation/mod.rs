@@ -1,10 +1,13 @@
 //! One simulation: PETSc's time stepper with our residual, and what happens around each step.
 
+mod accepted;
+mod attempt;
+mod checkpoint;
+mod equations;
+mod interruption;
 mod progress;
-mod resume;
 mod solve;
 mod step;
-mod stepper;
 
 use std::cell::RefCell;
 use std::path::PathBuf;
@@ -14,6 +17,7 @@ use petsc::{Alpha2State, Ts, TsReason};
 
 use super::RunError;
 use super::checkpoint::{Resumed, RunState, hardening_checksum};
+use super::counts::Counts;
 use super::diagnosis::Refusal;
 use super::recorder::Recorder;
 use super::setup::{LinearSolve, defaults};
@@ -24,9 +28,11 @@ use super::stop_watch::StopWatch;
 use crate::case::{Case, Dynamics};
 use crate::system::{History, System};
 use crate::tool::PunchMotion;
-use progress::{Accepted, Attempt, Progress};
+use accepted::Accepted;
+use attempt::Attempt;
+use progress::Progress;
 
-pub use resume::Interruption;
+pub use interruption::Interruption;
 
 /// What the hooks of the time stepper share.
 pub(super) struct Simulation {
@@ -49,17 +55,6 @@ struct Settings {
     spent: Spent,
     /// What a checkpoint says about the case it belongs to.
     identity: RunState,
-}
-
-/// Work done over the run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    /// Accepted steps.
-    pub steps: u64,
-    /// Solves refused.
-    pub refused: u64,
-    /// Newton iterations of all solves; each is one linear solve.
-    pub newton: u64,
 }
 
 /// How a simulation ended.

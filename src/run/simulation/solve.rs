@@ -6,11 +6,10 @@ use petsc::{
 };
 
 use super::Simulation;
-use super::progress::{Accepted, Attempt, Before};
+use super::attempt::Attempt;
 use crate::ranks;
 use crate::run::diagnosis::{Refusal, SolveWatch};
 use crate::run::ledger::LEAST_FORCE;
-use crate::run::newton::limited_length;
 use crate::run::setup::defaults;
 
 /// Largest imbalance and largest tensile force of a contact point after a converged solve, as a share of the
@@ -66,52 +65,28 @@ impl Simulation {
         if let Some(rates) = &mut progress.accepted.rates {
             rates.attempt(ts)?;
         }
-        let expected = self.expected_displacement(&progress.accepted, t, dt)?;
+        let (system, motion) = (&self.settings.system, &self.settings.motion);
+        let accepted = &progress.accepted;
+        let expected = accepted.expected_displacement(system, motion, t, dt)?;
         progress.attempt = Attempt::new(t, dt, expected);
         Ok(())
     }
 
-    /// Length of a Newton step: damped where the solve stagnates, and limited where it would carry the
-    /// sheet much farther than the step in time does.
+    /// Length of a Newton step.
     pub(super) fn step_length(&self, info: &LineSearchInfo<'_>) -> Result<f64, CallbackError> {
         let iteration = info.iteration.unsigned_abs() as usize;
         let correction = self.settings.system.largest_displacement(info.step)?;
         let attempt = &mut self.progress.borrow_mut().attempt;
-        let damped = attempt.damping.step_length(iteration, info.residual_norm);
-        let limited = limited_length(iteration, correction, attempt.expected);
-        attempt.inertia.follow(limited);
-        Ok(damped.min(limited))
+        Ok(attempt.step_length(iteration, info.residual_norm, correction))
     }
 
-    /// The largest displacement that a step of length `dt` (ms) to time `t` is expected to bring, mm: that of the
-    /// punch, or of the sheet if it moved faster in the last step.
-    fn expected_displacement(&self, from: &Accepted, t: f64, dt: f64) -> petsc::Result<f64> {
-        let motion = &self.settings.motion;
-        let punch = (motion.depth(t) - motion.depth(t - dt)).abs();
-        let Some(before) = &from.before else {
-            return Ok(punch);
-        };
-        let mut moved = from.unknowns.to_owned()?;
-        moved.axpy(-1.0, &before.unknowns)?;
-        let moved = self.settings.system.largest_displacement(&moved)?;
-        Ok(punch.max(moved * dt / before.dt))
-    }
-
-    /// Moves the start of a solve on along the last step: displacements only, with multipliers, gaps
-    /// and so the active set as they were. Not after a refused solve, nor where the punch turns.
-    pub(super) fn extrapolate(&self, guess: &mut VectorRef) -> Result<(), CallbackError> {
+    /// Where a solve starts: not beyond the last accepted state after a refused solve.
+    pub(super) fn first_guess(&self, guess: &mut VectorRef) -> Result<(), CallbackError> {
         let progress = &*self.progress.borrow();
-        let Some(Before { unknowns, dt }) = &progress.accepted.before else {
-            return Ok(());
-        };
-        if !self.settings.extrapolate || !progress.refusals.is_empty() {
-            return Ok(());
-        }
-        let ratio = progress.attempt.dt / dt;
-        let (now, before) = (progress.accepted.unknowns.read()?, unknowns.read()?);
-        let mut guess = guess.write()?;
-        for i in 0..self.settings.system.owned_displacements() {
-            guess[i] = now[i] + ratio * (now[i] - before[i]);
+        if self.settings.extrapolate && progress.refusals.is_empty() {
+            let displacements = self.settings.system.owned_displacements();
+            let dt = progress.attempt.dt;
+            progress.accepted.extrapolate(dt, displacements, guess)?;
         }
         Ok(())
     }

@@ -4,7 +4,6 @@
 use petsc::{CallbackError, TsReason, TsRef, VectorRef};
 
 use super::Simulation;
-use super::progress::{Accepted, Before};
 use crate::output::StepRecord;
 use crate::run::ledger::StepEffort;
 use crate::run::springback::ReleasedSheet;
@@ -108,23 +107,6 @@ impl Simulation {
         if let Some(label) = label {
             recorder.shape(label, t, &nodes, system)?;
         }
-        Ok(())
-    }
-}
-
-impl Accepted {
-    /// To the solution at time `t` after a step of length `dt` (ms).
-    fn move_on(
-        &mut self,
-        solution: &VectorRef,
-        t: f64,
-        dt: f64,
-        turned: bool,
-    ) -> petsc::Result<()> {
-        let unknowns = std::mem::replace(&mut self.unknowns, solution.to_owned()?);
-        self.before = (!turned).then_some(Before { unknowns, dt });
-        self.time = t;
-        self.counts.steps += 1;
         Ok(())
     }
 }

@@ -77,7 +77,7 @@ impl Simulation {
         out: &mut MatrixRef,
     ) -> Result<(), CallbackError> {
         let progress = &*self.progress.borrow();
-        let shift = progress.attempt.inertia.multiple() * shift;
+        let shift = progress.attempt.inertia() * shift;
         linear.evaluate(&progress.accepted.history, t, u, shift, out)
     }
 
@@ -99,7 +99,7 @@ impl Simulation {
             })?;
         }
         let this = Rc::clone(self);
-        snes.set_initial_guess(move |guess| this.extrapolate(guess))?;
+        snes.set_initial_guess(move |guess| this.first_guess(guess))?;
         let this = Rc::clone(self);
         snes.set_shell_line_search(move |info| this.step_length(info))?;
         Ok(())

@@ -6,31 +6,15 @@ use std::time::Instant;
 use petsc::{Alpha2State, CallbackError, Ts, TsReason, TsRef, Vector, VectorRef};
 
 use super::Simulation;
-use super::progress::{Before, Progress};
+use super::accepted::Before;
+use super::interruption::Interruption;
+use super::progress::Progress;
 use crate::output::OutputError;
 use crate::ranks::lowest_failing;
 use crate::run::RunError;
 use crate::run::checkpoint::{Resumed, RunState};
-use crate::run::stop_watch::{Order, StopCause};
+use crate::run::stop_watch::Order;
 use crate::system::{MeshOrderError, Snapshot};
-
-/// A run that was ended before its end.
-#[derive(Clone, Debug)]
-pub struct Interruption {
-    /// Why.
-    pub cause: StopCause,
-    /// Time of the last accepted step, ms.
-    pub time: f64,
-    /// From where it can go on.
-    pub checkpoint: PathBuf,
-}
-
-impl Interruption {
-    /// Where and why, in one sentence.
-    pub fn sentence(&self) -> String {
-        format!("at t = {:.6} ms: {}", self.time, self.cause.sentence())
-    }
-}
 
 impl Simulation {
     /// After an accepted step that is not the last: writes a checkpoint if one is due, and ends the run if it is asked
