@@ -4,10 +4,10 @@ use mpi::traits::Communicator;
 
 use super::error::ElementFailure;
 use super::history::History;
+use super::measure_sums::{Maxima, Sums};
 use super::subdomain::{Subdomain, interpolate};
 use crate::element::edge_shape;
 use crate::mesh::SurfaceSide;
-use crate::ranks;
 
 /// The arm's fit uses the outer sixth of the half sheet: beyond the die's shoulder it is free of
 /// stress, so it is straight unless it yielded before.
@@ -55,48 +55,6 @@ pub struct Measures {
     /// Largest excess of friction over the coefficient times the contact force of a point, as a share
     /// of the coefficient times the largest contact force; zero if the cone holds.
     pub cone_violation: f64,
-}
-
-/// What adds up over points, elements and ranks, for the half model and per millimetre of width.
-#[derive(Clone, Debug, Default)]
-struct Sums {
-    punch_force: f64,
-    die_force: f64,
-    inertia: f64,
-    kinetic_energy: f64,
-    strain_energy: f64,
-    plastic_dissipation: f64,
-    contact_energy: f64,
-    active_points: f64,
-    point_a_displacement: f64,
-    point_a_gap: f64,
-    arm: ArmSums,
-}
-
-/// Sums over the nodes of the arm: reference position X from the sheet's end, and present position x.
-#[derive(Clone, Debug, Default)]
-struct ArmSums {
-    nodes: f64,
-    from: [f64; 2],
-    now: [f64; 2],
-    /// X·x
-    along: f64,
-    /// X_1 x_2 - X_2 x_1
-    across: f64,
-    /// X·X + x·x
-    spread: f64,
-}
-
-/// What is largest over points and ranks, likewise; minus infinity where there is nothing.
-#[derive(Clone, Debug)]
-struct Maxima {
-    penetration: f64,
-    tensile_force: f64,
-    contact_force: f64,
-    complementarity: f64,
-    plastic_strain: f64,
-    /// Of friction over the coefficient less the contact force.
-    friction_excess: f64,
 }
 
 /// One rank's contribution to the [`Measures`].
@@ -230,159 +188,6 @@ impl Subdomain {
                 sums.arm.add([before[0] - half_length, before[1]], now);
             }
         }
-    }
-}
-
-impl Maxima {
-    const NONE: Self = Self {
-        penetration: f64::NEG_INFINITY,
-        tensile_force: f64::NEG_INFINITY,
-        contact_force: f64::NEG_INFINITY,
-        complementarity: f64::NEG_INFINITY,
-        plastic_strain: f64::NEG_INFINITY,
-        friction_excess: f64::NEG_INFINITY,
-    };
-
-    /// The larger of both, each.
-    fn include(&mut self, other: &Self) {
-        *self = Self {
-            penetration: self.penetration.max(other.penetration),
-            tensile_force: self.tensile_force.max(other.tensile_force),
-            contact_force: self.contact_force.max(other.contact_force),
-            complementarity: self.complementarity.max(other.complementarity),
-            plastic_strain: self.plastic_strain.max(other.plastic_strain),
-            friction_excess: self.friction_excess.max(other.friction_excess),
-        };
-    }
-
-    /// Over all ranks. Collective.
-    fn over_ranks(&self, comm: &impl Communicator) -> Self {
-        let Self {
-            penetration,
-            tensile_force,
-            contact_force,
-            complementarity,
-            plastic_strain,
-            friction_excess,
-        } = *self;
-        let mine = [
-            penetration,
-            tensile_force,
-            contact_force,
-            complementarity,
-            plastic_strain,
-            friction_excess,
-        ];
-        let [
-            penetration,
-            tensile_force,
-            contact_force,
-            complementarity,
-            plastic_strain,
-            friction_excess,
-        ] = ranks::maxima(comm, mine);
-        Self {
-            penetration,
-            tensile_force,
-            contact_force,
-            complementarity,
-            plastic_strain,
-            friction_excess,
-        }
-    }
-}
-
-impl Sums {
-    /// Over all ranks. Collective.
-    fn over_ranks(&self, comm: &impl Communicator) -> Self {
-        let mine = [
-            self.punch_force,
-            self.die_force,
-            self.inertia,
-            self.kinetic_energy,
-            self.strain_energy,
-            self.plastic_dissipation,
-            self.contact_energy,
-            self.active_points,
-            self.point_a_displacement,
-            self.point_a_gap,
-        ];
-        let [
-            punch_force,
-            die_force,
-            inertia,
-            kinetic_energy,
-            strain_energy,
-            plastic_dissipation,
-            contact_energy,
-            active_points,
-            point_a_displacement,
-            point_a_gap,
-        ] = ranks::sums(comm, mine);
-        Self {
-            punch_force,
-            die_force,
-            inertia,
-            kinetic_energy,
-            strain_energy,
-            plastic_dissipation,
-            contact_energy,
-            active_points,
-            point_a_displacement,
-            point_a_gap,
-            arm: self.arm.over_ranks(comm),
-        }
-    }
-}
-
-impl ArmSums {
-    /// Adds a node with its reference and its present position.
-    fn add(&mut self, from: [f64; 2], now: [f64; 2]) {
-        self.nodes += 1.0;
-        for k in 0..2 {
-            self.from[k] += from[k];
-            self.now[k] += now[k];
-        }
-        self.along += from[0] * now[0] + from[1] * now[1];
-        self.across += from[0] * now[1] - from[1] * now[0];
-        self.spread += from[0] * from[0] + from[1] * from[1] + now[0] * now[0] + now[1] * now[1];
-    }
-
-    /// Over all ranks. Collective.
-    fn over_ranks(&self, comm: &impl Communicator) -> Self {
-        let [[fx, fy], [nx, ny]] = [self.from, self.now];
-        let mine = [
-            self.nodes,
-            fx,
-            fy,
-            nx,
-            ny,
-            self.along,
-            self.across,
-            self.spread,
-        ];
-        let [nodes, fx, fy, nx, ny, along, across, spread] = ranks::sums(comm, mine);
-        Self {
-            nodes,
-            from: [fx, fy],
-            now: [nx, ny],
-            along,
-            across,
-            spread,
-        }
-    }
-
-    /// Opening angle (degrees) and root mean square residual (mm) of the rigid motion that fits the arm
-    /// best in the least squares sense (Kabsch 1976, in two dimensions).
-    fn fit(&self) -> (f64, f64) {
-        let n = self.nodes;
-        let ([fx, fy], [nx, ny]) = (self.from.map(|x| x / n), self.now.map(|x| x / n));
-        let along = self.along - n * (fx * nx + fy * ny);
-        let across = self.across - n * (fx * ny - fy * nx);
-        let spread = self.spread - n * (fx * fx + fy * fy + nx * nx + ny * ny);
-        let rotation = across.atan2(along).to_degrees();
-        let residual = ((spread - 2.0 * along.hypot(across)) / n).max(0.0).sqrt();
-        (180.0 - 2.0 * rotation, residual)
     }
 }
 

@@ -13,6 +13,7 @@ mod convergence;
 mod error;
 mod history;
 mod initial;
+mod measure_sums;
 mod measures;
 mod mesh_order;
 mod node_samples;
