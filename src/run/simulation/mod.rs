@@ -2,10 +2,11 @@
 
 mod accepted;
 mod attempt;
-mod checkpoint;
+
 mod equations;
 mod interruption;
 mod progress;
+mod resume;
 mod solve;
 mod step;
 
