@@ -17,7 +17,6 @@ pub mod folder;
 mod hdf_collective;
 pub mod history;
 pub mod monitor;
-mod number;
 pub mod plot;
 pub mod record;
 pub mod report;
@@ -36,7 +35,6 @@ pub use fields::{ContactFile, ContactSample, FieldSample, SheetFile, SheetPart, 
 pub use folder::OutputDir;
 pub use history::History;
 pub use monitor::Monitor;
-pub(crate) use number::number;
 pub use record::StepRecord;
 pub use report::Report;
 pub use summary::Summary;

@@ -5,12 +5,15 @@ use std::io::stdout;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::{RunError, recorder};
+use super::error::RunError;
+use super::recorder;
+use super::step_size::landmarks;
 use crate::case::{Case, Dynamics};
 use crate::contact::ContactLocation;
 use crate::output::monitor::Monitor;
-use crate::output::{OutputDir, number, plot};
+use crate::output::{OutputDir, plot};
 use crate::system::{Problem, Share, System};
+use crate::text::number;
 
 /// Memory of a rank without any unknowns, alone and among others, and for n log2 n with n the unknowns it owns (the
 /// factors of a plane mesh grow so), bytes: fitted to the peaks of resident memory of short runs with 3 924, 9 882,
@@ -34,7 +37,7 @@ pub(super) fn describe(case: &Case, comm: &SimpleCommunicator) -> Result<(), Run
     }
     let shares = system.shares();
     let mut text = String::from("dry run: the model, nothing is solved\n\n");
-    for (name, value) in facts(case, &system, &shares, &super::landmarks(case)?) {
+    for (name, value) in facts(case, &system, &shares, &landmarks(case)?) {
         text.push_str(&format!("{name:<12}  {value}\n"));
     }
     text.push_str(&table(&shares));

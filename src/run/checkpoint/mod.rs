@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Root};
 
-use super::RunError;
+use super::error::{RestartError, RunError};
 use crate::case::{Case, Difference, Restart};
 use crate::output::{Arrays, OutputError, agree, checkpoint};
 use crate::system::System;
@@ -73,30 +73,6 @@ impl Resumed {
             mine.ok_or(OutputError::Checkpoint { path, reason }),
         )
     }
-}
-
-/// Why there is nothing to go on from.
-#[derive(Debug, thiserror::Error)]
-pub enum RestartError {
-    /// No checkpoint in the output folder.
-    #[error(
-        "-restart: there is no checkpoint in {}; run without -restart, or give the path of a checkpoint", folder.display()
-    )]
-    None {
-        /// The folder.
-        folder: PathBuf,
-    },
-    /// The checkpoint belongs to another problem.
-    #[error(
-        "-restart: the checkpoint {} belongs to another problem ({differences}); give the same options, or run without \
-         -restart", path.display()
-    )]
-    OtherProblem {
-        /// The checkpoint.
-        path: PathBuf,
-        /// The options that differ.
-        differences: String,
-    },
 }
 
 /// The checkpoint the case asks for, if it asks for one. Rank 0 chooses and checks, every rank reads. Collective.

@@ -4,7 +4,8 @@ use super::angles::angles;
 use crate::case::Case;
 use crate::output::monitor::{failed_banner, finished_banner, interrupted_banner};
 use crate::output::{Diagnosis, VerdictTable};
-use crate::run::{Interruption, Outcome};
+use crate::run::outcome::Outcome;
+use crate::run::simulation::Interruption;
 
 /// Of one that came to its end.
 pub(super) fn finished(

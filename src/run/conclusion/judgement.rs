@@ -2,7 +2,7 @@
 
 use crate::case::{self, Case, Instant, ReferenceValue};
 use crate::output::{StepRecord, Tolerance, VerdictRow, VerdictTable};
-use crate::run::RunError;
+use crate::run::error::RunError;
 use crate::run::ledger::LEAST_FORCE;
 
 /// Largest share by which punch force may differ from die force and inertia.

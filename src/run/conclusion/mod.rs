@@ -10,8 +10,9 @@ mod summary;
 use mpi::traits::Communicator;
 use petsc::Session;
 
+use super::error::RunError;
+use super::outcome::Outcome;
 use super::setup::unread;
-use super::{Outcome, RunError};
 use crate::case::Case;
 use crate::output::Report;
 
@@ -39,7 +40,7 @@ pub fn conclude(
     let to_the_end = outcome.failure.is_none() && outcome.interruption.is_none();
     let verdicts = judgement::judge(case, outcome.recorder.records(), to_the_end)?;
     let reference = case.reference_force()?;
-    let summary = summary::summarise(case, &outcome, session, comm, verdicts.clone());
+    let summary = summary::summarise(case, &outcome, session, comm, verdicts.clone())?;
     if comm.rank() == 0 {
         summary.write(outcome.recorder.folder().summary())?;
         outcome.recorder.force_figure(&reference)?;

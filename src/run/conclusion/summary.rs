@@ -8,21 +8,24 @@ use petsc::Session;
 use super::angles::{NamedAngle, angles};
 use super::inputs;
 use super::judgement::{BALANCE_LIMIT, CONE_LIMIT, PULL_LIMIT};
-use crate::case::Case;
+use crate::case::{Case, CaseError};
 use crate::output::VerdictTable;
 use crate::output::summary::{Certificates, Counts, Provenance, Status, Summary, Timing};
-use crate::run::Outcome;
 use crate::run::diagnosis::{diagnose, notes};
+use crate::run::outcome::Outcome;
 use crate::run::setup::blas::Blas;
 
 /// The summary of an outcome and its verdicts.
+///
+/// # Errors
+/// None unless the table of options is broken, which the tests exclude.
 pub(super) fn summarise(
     case: &Case,
     outcome: &Outcome,
     session: &Session,
     comm: &impl Communicator,
     verdicts: VerdictTable,
-) -> Summary {
+) -> Result<Summary, CaseError> {
     let records = outcome.recorder.records();
     let mut certificates = Certificates::default();
     records
@@ -39,13 +42,14 @@ pub(super) fn summarise(
         let pair = |angle: &NamedAngle| (angle.name.clone(), value(angle));
         angles.iter().map(pair).collect()
     };
-    Summary {
+    Ok(Summary {
         status,
         reason,
         diagnosis: outcome
             .failure
             .as_ref()
-            .map(|failure| diagnose(case, failure, outcome.counts.steps)),
+            .map(|failure| diagnose(case, failure, outcome.counts.steps))
+            .transpose()?,
         notes: notes(case, records),
         last: records.last().copied(),
         angles_deg: by_name(|angle| angle.degrees),
@@ -96,5 +100,5 @@ pub(super) fn summarise(
             cpu_s: outcome.cpu_seconds,
             wall_s: outcome.wall_seconds,
         },
-    }
+    })
 }
