@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 use ssnp155::case::Case;
 use ssnp155::output::plot::{self, DeformedElement, Shape, View};
-use ssnp155::output::{FieldSample, SheetPart, StepRecord};
+use ssnp155::output::{SheetPart, StepRecord};
+use ssnp155::system::NodeSample;
 
 fn file(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("figures");
@@ -76,10 +77,14 @@ fn bent_sheet(columns: usize, rows: usize, angle: f64, stroke: f64) -> Vec<Defor
                 * fade
                 * if angle > 0.0 { 1.0 } else { 0.0 };
             part.coordinates.push([x, y]);
-            samples.push(FieldSample {
+            samples.push(NodeSample {
                 displacement: [bent[0] - x, bent[1] - y],
+                stress: [0.0; 4],
+                von_mises_stress: 0.0,
                 equivalent_plastic_strain: strain,
-                ..FieldSample::default()
+                contact_pressure: 0.0,
+                gap: 0.0,
+                contact_state: None,
             });
         }
     }

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::{Diagnosis, OutputError, StepRecord, VerdictTable, atomic};
+use super::folder::SUMMARY;
+use super::{OutputError, StepRecord, VerdictTable, atomic};
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -22,6 +23,21 @@ pub enum Status {
     /// Something else went wrong: input, files, memory.
     #[serde(rename = "failed")]
     Failed,
+}
+
+/// What is known about a run that did not finish.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct Diagnosis {
+    /// The last accepted step, its time and the depth of the punch.
+    pub place: String,
+    /// Why there is no further step, in a sentence or two.
+    pub cause: String,
+    /// What was seen in the last solve.
+    pub observed: Vec<String>,
+    /// The solves that were refused, the first and the last ones.
+    pub tried: Vec<String>,
+    /// What the user can do, the most promising first.
+    pub remedies: Vec<String>,
 }
 
 /// Counts over the whole run.
@@ -185,7 +201,7 @@ impl Summary {
     pub fn json(&self) -> Result<String, OutputError> {
         let text = serde_json::to_string_pretty(self);
         text.map(|text| text + "\n")
-            .map_err(|error| OutputError::write(Path::new("summary.json"), error))
+            .map_err(|error| OutputError::write(Path::new(SUMMARY), error))
     }
 
     /// Writes the summary: the file is there in full or not at all.

@@ -33,7 +33,7 @@ pub(super) fn describe(case: &Case, comm: &SimpleCommunicator) -> Result<(), Run
     if comm.rank() == 0 {
         let local = system.local();
         let (die, punch) = recorder::right_halves(local.problem());
-        plot::model(folder.file("model.svg"), case, &die, &punch)?;
+        plot::model(folder.model_figure(), case, &die, &punch)?;
     }
     let shares = system.shares();
     let mut text = String::from("dry run: the model, nothing is solved\n\n");
@@ -43,7 +43,7 @@ pub(super) fn describe(case: &Case, comm: &SimpleCommunicator) -> Result<(), Run
     text.push_str(&table(&shares));
     text.push_str(&format!(
         "\nsketch        {}\n",
-        folder.file("model.svg").display()
+        folder.model_figure().display()
     ));
     Monitor::new(comm.rank(), stdout(), case.loading.motion()).show(&text);
     Ok(())

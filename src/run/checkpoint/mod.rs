@@ -8,11 +8,12 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::{Communicator, Root};
+use mpi::traits::Communicator;
 
 use super::error::{RestartError, RunError};
 use crate::case::{Case, Difference, Restart};
 use crate::output::{Arrays, OutputError, agree, checkpoint};
+use crate::ranks::broadcast_bytes;
 use crate::system::System;
 
 pub(super) use state::RunState;
@@ -136,13 +137,9 @@ fn first_whole(candidates: &[PathBuf]) -> Result<Choice, OutputError> {
     first_error.map_or(Ok(choice), Err)
 }
 
+/// Rank 0's text on every rank. Collective.
 fn broadcast(comm: &SimpleCommunicator, text: &mut String) {
-    let root = comm.process_at_rank(0);
-    let mut length = text.len() as u64;
-    root.broadcast_into(&mut length);
-    let mut bytes = std::mem::take(text).into_bytes();
-    bytes.resize(length as usize, 0);
-    root.broadcast_into(&mut bytes[..]);
+    let bytes = broadcast_bytes(comm, 0, std::mem::take(text).into_bytes());
     *text = String::from_utf8_lossy(&bytes).into_owned();
 }
 

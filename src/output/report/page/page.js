@@ -3,6 +3,8 @@ const OURS = "#14559e", OURS_LIGHT = "#86b3df", THEIRS = "#c2571a";
 const times = column("t_ms"), ways = times.map(way), turnWay = model.unload_fraction > 0 ? model.stroke : undefined;
 const stroke = column("stroke_mm");
 const wayRange = [0, Math.max(ways[ways.length - 1] || 0, 1e-3)];
+// Closed contact points by state 1, 2, 3. Forward is along the tool's outline: outwards on the die, inwards on the punch.
+const STATES = [["stick", "#1b2430"], ["slip forward", "#c2571a"], ["slip backward", "#8a4fa3"]];
 let pressureChart = null;
 
 function goTo(time) {
@@ -28,16 +30,17 @@ function setState(s) {
 }
 
 function drawPressure() {
-  const up = { x: [], y: [] }, low = { x: [], y: [] }, rub = { x: [], y: [] };
-  contacts(look.state, (x, y, upper, pressure, friction, along) => {
+  const up = { x: [], y: [] }, low = { x: [], y: [] }, friction = STATES.map(() => ({ x: [], y: [] }));
+  contacts(look.state, (x, y, upper, pressure, traction, along, state) => {
     const s = upper ? up : low; s.x.push(along); s.y.push(upper ? pressure : -pressure);
-    if (model.friction > 0) { rub.x.push(along); rub.y.push((upper ? 1 : -1) * Math.abs(friction)); }
+    const f = friction[state - 1];
+    if (model.friction > 0 && f) { f.x.push(along); f.y.push((upper ? 1 : -1) * Math.abs(traction)); }
   });
   const o = pressureChart.options;
   o.series = [
     { name: "punch side, shown upwards", color: PUNCH_MARK, kind: "stems", width: 2, ...up },
     { name: "die side, shown downwards", color: DIE_MARK, kind: "stems", width: 2, ...low },
-    ...(model.friction > 0 ? [{ name: "friction traction, its size", color: "#1b2430", kind: "marks", radius: 1.5, ...rub }] : []),
+    ...STATES.map(([name, color], k) => ({ name: `friction traction, ${name}`, color, kind: "marks", radius: 1.5, ...friction[k] })),
   ];
   const most = Math.max(10, ...up.y, ...low.y.map(v => -v)), step = ticks(0, most, 3)[1] || 10, end = Math.ceil(most / step) * step;
   o.yRange = [low.x.length ? -end : 0, up.x.length || !low.x.length ? end : 0];

@@ -106,7 +106,7 @@ function path(c, corner, n) {
   }
 }
 
-// Calls f(x, y, upper, pressure, friction, along, status) for each contact point that carries in state s.
+// Calls f(x, y, upper, pressure, friction, along, state of contact) for each contact point that carries a force in state s.
 function contacts(s, f) {
   const t = states.contact;
   for (let i = t.starts[s]; i < t.starts[s + 1]; i++) {
@@ -159,7 +159,7 @@ function drawSheet(printing) {
   const tip = model.thickness - depth(states.times[look.state]);
   if (wholeView.Y(tip) > 34) c.fillText("punch", wholeView.X(1.2), Math.max(wholeView.Y(tip + 0.6 * model.punch_radius), 22));
   bar(a, box); bar(b, close);
-  document.getElementById("near-caption").textContent = `Close-up, ${look.zoom} mm wide, framed in red on the left. Dots: contact points that carry.`;
+  document.getElementById("near-caption").textContent = `Close-up, ${look.zoom} mm wide, framed in red on the left. Dots: contact points that carry a force.`;
   document.getElementById("whole-caption").textContent = "True shape, equal scales. Dashed: plane of symmetry. Click to move the close-up.";
   colorBar(printing);
 }
