@@ -6,6 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::folder::SUMMARY;
+use super::record::{Badness, COLUMNS, Column};
 use super::{OutputError, StepRecord, VerdictTable, atomic};
 
 /// How a run ended.
@@ -66,71 +67,39 @@ pub struct WorstValue {
     pub t_ms: f64,
 }
 
-/// One certificate: its column in the history, and how bad a record is (larger is worse).
-type Certificate = (&'static str, fn(&StepRecord) -> f64, fn(f64) -> f64);
-
-const CERTIFICATES: [Certificate; 7] = [
-    (
-        "max_penetration_mm",
-        |record| record.max_penetration_mm,
-        |value| value,
-    ),
-    (
-        "min_contact_force_N",
-        |record| record.min_contact_force_N,
-        |value| -value,
-    ),
-    (
-        "max_complementarity_mJ",
-        |record| record.max_complementarity_mJ,
-        f64::abs,
-    ),
-    ("energy_error", |record| record.energy_error, f64::abs),
-    ("balance_error", |record| record.balance_error, f64::abs),
-    ("cone_violation", |record| record.cone_violation, f64::abs),
-    (
-        "residual_norm_mm",
-        |record| record.residual_norm_mm,
-        f64::abs,
-    ),
-];
-
-/// Watches the certificates of every step and remembers where each was worst.
-#[derive(Debug, Clone, Default)]
-pub struct Certificates {
-    steps: u64,
-    worst: [Option<WorstValue>; CERTIFICATES.len()],
+/// The columns that are certificates, each with how bad a value is.
+fn certificates() -> impl Iterator<Item = (&'static Column, Badness)> {
+    COLUMNS
+        .iter()
+        .filter_map(|column| Some((column, column.certificate?)))
 }
 
-impl Certificates {
-    /// Looks at the next accepted step. A value that is not a number counts as the worst of all.
-    pub fn observe(&mut self, record: &StepRecord) {
-        self.steps += 1;
-        for (worst, (certificate, value, badness)) in self.worst.iter_mut().zip(CERTIFICATES) {
-            let value = value(record);
-            let how_bad = |value: f64| {
-                if value.is_nan() {
-                    f64::INFINITY
-                } else {
-                    badness(value)
-                }
-            };
-            let replaces = worst.is_none_or(|old| how_bad(value) > how_bad(old.value));
-            if replaces {
-                *worst = Some(WorstValue {
-                    certificate,
+/// The worst value of every certificate over the accepted steps, each with its step. A value that is not a number counts
+/// as the worst of all. Empty before the first step.
+pub fn worst_values(records: &[StepRecord]) -> Vec<WorstValue> {
+    let worst = |(column, badness): (&'static Column, Badness)| {
+        let how_bad = |value: f64| {
+            if value.is_nan() {
+                f64::INFINITY
+            } else {
+                badness(value)
+            }
+        };
+        let mut worst: Option<WorstValue> = None;
+        for (step, record) in (1..).zip(records) {
+            let value = (column.value)(record);
+            if worst.is_none_or(|old| how_bad(value) > how_bad(old.value)) {
+                worst = Some(WorstValue {
+                    certificate: column.name,
                     value,
-                    step: self.steps,
+                    step,
                     t_ms: record.t_ms,
                 });
             }
         }
-    }
-
-    /// The worst values so far; empty before the first step.
-    pub fn worst(&self) -> Vec<WorstValue> {
-        self.worst.iter().flatten().copied().collect()
-    }
+        worst
+    };
+    certificates().filter_map(worst).collect()
 }
 
 /// What made the result: enough to make it again.
@@ -183,7 +152,7 @@ pub struct Summary {
     pub counts: Counts,
     /// Tolerances by name, units in the names.
     pub tolerances: BTreeMap<String, f64>,
-    /// Worst certificate values, see [`Certificates::worst`].
+    /// Worst certificate values, see [`worst_values`].
     pub worst: Vec<WorstValue>,
     /// The comparison with the references.
     pub verdicts: VerdictTable,
@@ -227,24 +196,24 @@ mod tests {
 
     #[test]
     fn the_worst_values_know_their_step() {
-        let mut certificates = Certificates::default();
-        certificates.observe(&StepRecord {
-            max_penetration_mm: 1e-9,
-            min_contact_force_N: 0.5,
-            ..record(1.0)
-        });
-        certificates.observe(&StepRecord {
-            energy_error: -2e-3,
-            min_contact_force_N: -0.1,
-            ..record(2.0)
-        });
-        certificates.observe(&StepRecord {
-            energy_error: 1e-3,
-            balance_error: f64::NAN,
-            ..record(3.0)
-        });
-        certificates.observe(&record(4.0));
-        let worst = certificates.worst();
+        let worst = worst_values(&[
+            StepRecord {
+                max_penetration_mm: 1e-9,
+                min_contact_force_N: 0.5,
+                ..record(1.0)
+            },
+            StepRecord {
+                energy_error: -2e-3,
+                min_contact_force_N: -0.1,
+                ..record(2.0)
+            },
+            StepRecord {
+                energy_error: 1e-3,
+                balance_error: f64::NAN,
+                ..record(3.0)
+            },
+            record(4.0),
+        ]);
         let at = |name: &str| {
             worst
                 .iter()
@@ -256,6 +225,7 @@ mod tests {
         assert_eq!(at("min_contact_force_N"), (-0.1, 2));
         assert_eq!(at("energy_error"), (-2e-3, 2));
         assert_eq!(at("balance_error").1, 3);
+        assert!(worst_values(&[]).is_empty());
     }
 
     #[test]

@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use petsc::TsReason;
 
 use super::diagnosis::Refusal;
+use super::ledger::Counts;
 use super::recorder::Recorder;
 use super::setup::defaults;
-use super::simulation::{Counts, Interruption};
+use super::simulation::Interruption;
 use super::springback::Springback;
 use crate::case::Case;
 use crate::text::number;

@@ -10,7 +10,7 @@ use super::inputs;
 use super::judgement::{BALANCE_LIMIT, CONE_LIMIT, PULL_LIMIT};
 use crate::case::{Case, CaseError};
 use crate::output::VerdictTable;
-use crate::output::summary::{Certificates, Counts, Provenance, Status, Summary, Timing};
+use crate::output::summary::{Counts, Provenance, Status, Summary, Timing, worst_values};
 use crate::run::diagnosis::{diagnose, notes};
 use crate::run::outcome::Outcome;
 use crate::run::setup::blas::Blas;
@@ -27,10 +27,6 @@ pub(super) fn summarise(
     verdicts: VerdictTable,
 ) -> Result<Summary, CaseError> {
     let records = outcome.recorder.records();
-    let mut certificates = Certificates::default();
-    records
-        .iter()
-        .for_each(|record| certificates.observe(record));
     let (status, reason) = match (&outcome.failure, &outcome.interruption) {
         (Some(failure), _) => (Status::NotConverged, Some(failure.sentence())),
         (None, Some(stop)) => (Status::Interrupted, Some(stop.sentence())),
@@ -70,7 +66,7 @@ pub(super) fn summarise(
             (text("balance"), BALANCE_LIMIT),
             (text("cone"), CONE_LIMIT),
         ]),
-        worst: certificates.worst(),
+        worst: worst_values(records),
         verdicts,
         provenance: Provenance {
             version: text(env!("CARGO_PKG_VERSION")),
