@@ -8,6 +8,7 @@
 
 mod arrays;
 mod atomic;
+pub mod banner;
 pub mod checkpoint;
 pub mod error;
 pub mod folder;

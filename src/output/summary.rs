@@ -21,9 +21,6 @@ pub enum Status {
     /// Stopped on request (signal, time limit); what came before is valid.
     #[serde(rename = "interrupted")]
     Interrupted,
-    /// Something else went wrong: input, files, memory.
-    #[serde(rename = "failed")]
-    Failed,
 }
 
 /// What is known about a run that did not finish.
@@ -163,6 +160,19 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// How the run ended, in a few words.
+    pub fn headline(&self) -> String {
+        match (self.status, self.verdicts.failures()) {
+            (Status::NotConverged, _) => "FAILED: the run did not finish".to_owned(),
+            (Status::Interrupted, _) => {
+                "INTERRUPTED: the run is not finished and can go on".to_owned()
+            }
+            (Status::Finished, 0) => "FINISHED: every verdict holds".to_owned(),
+            (Status::Finished, 1) => "FINISHED, but 1 verdict does not hold".to_owned(),
+            (Status::Finished, count) => format!("FINISHED, but {count} verdicts do not hold"),
+        }
+    }
+
     /// The JSON text, ending with a line break.
     ///
     /// # Errors
@@ -274,6 +284,7 @@ mod tests {
             },
         };
         let value: serde_json::Value = serde_json::from_str(&summary.json().unwrap()).unwrap();
+        assert_eq!(summary.headline(), "FAILED: the run did not finish");
         assert_eq!(value["status"], "not converged");
         assert_eq!(value["final"]["force_N"], 151.5);
         assert!(value["final"]["gap_A_mm"].is_null());

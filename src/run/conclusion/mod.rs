@@ -15,6 +15,7 @@ use super::outcome::Outcome;
 use super::setup::unread;
 use crate::case::Case;
 use crate::output::Report;
+use crate::output::summary::Status;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,29 +52,7 @@ pub fn conclude(
         format!("\n{}\n", verdicts.text())
     };
     text.push_str(&unread::warnings()?);
-    let (banner, ending) = match (&summary.diagnosis, &outcome.interruption) {
-        (Some(diagnosis), _) => (
-            banner::failed(case, diagnosis, &outcome, &summary.notes),
-            Ending::DoesNotHold,
-        ),
-        (None, Some(stop)) => (
-            banner::interrupted(case, stop, &outcome, &summary.notes),
-            Ending::Interrupted,
-        ),
-        (None, None) => {
-            let holds = verdicts.failures() == 0;
-            let ending = if holds {
-                Ending::Holds
-            } else {
-                Ending::DoesNotHold
-            };
-            (
-                banner::finished(case, &outcome, &verdicts, &summary.notes),
-                ending,
-            )
-        }
-    };
-    text.push_str(&banner);
+    text.push_str(&banner::last_words(case, &summary, &outcome));
     outcome.recorder.show(&text);
     // The page is made from the files of the run, which all ranks must have closed.
     let (folder, records) = outcome.recorder.close();
@@ -86,5 +65,9 @@ pub fn conclude(
         };
         report.write(&folder)?;
     }
-    Ok(ending)
+    Ok(match summary.status {
+        Status::Interrupted => Ending::Interrupted,
+        Status::Finished if verdicts.failures() == 0 => Ending::Holds,
+        Status::Finished | Status::NotConverged => Ending::DoesNotHold,
+    })
 }

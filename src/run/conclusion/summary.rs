@@ -7,7 +7,7 @@ use petsc::Session;
 
 use super::angles::{NamedAngle, angles};
 use super::inputs;
-use super::judgement::{BALANCE_LIMIT, CONE_LIMIT, PULL_LIMIT};
+use super::judgement::{BALANCE_LIMIT, CONE_LIMIT, TENSION_LIMIT};
 use crate::case::{Case, CaseError};
 use crate::output::VerdictTable;
 use crate::output::summary::{Counts, Provenance, Status, Summary, Timing, worst_values};
@@ -62,7 +62,7 @@ pub(super) fn summarise(
                 text("penetration_mm"),
                 case.discretisation.penetration_limit,
             ),
-            (text("pull"), PULL_LIMIT),
+            (text("tensile_force"), TENSION_LIMIT),
             (text("balance"), BALANCE_LIMIT),
             (text("cone"), CONE_LIMIT),
         ]),

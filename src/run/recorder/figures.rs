@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::output::plot::{self, DeformedElement, Shape, View};
+use crate::output::plot::{self, DeformedElement, Shape};
 use crate::output::{OutputDir, OutputError};
 use crate::system::{Problem, Tool};
 
@@ -21,14 +21,15 @@ pub(super) fn shape(
     problem: &Problem,
 ) -> Result<(), OutputError> {
     let (die, punch) = right_halves(problem);
+    let nodes = &problem.mesh.nodes;
+    let sheet = [0, 1].map(|k| nodes.iter().map(|x| x[k]).fold(0.0, f64::max));
     let figure = Shape {
         title: &format!("{label}: punch down by {depth:.2} mm"),
         elements,
         die: &die,
         punch: &punch,
         stroke_mm: depth,
-        plastic_strain_max: None,
-        view: View::Whole,
+        sheet,
     };
     plot::shape(folder.shape_figure(label), &figure)
 }
