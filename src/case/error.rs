@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::material::hardening::HardeningError;
+use crate::material::hardening::{HardeningError, ImpossibleLaw};
 use crate::text::show_real;
 
 /// Why a case is refused. The text is one sentence for the person who wrote the options.
@@ -106,6 +106,24 @@ pub enum CaseError {
     /// The hardening table is refused; what it says names the file and the line.
     #[error("option -hardening_file: {0}")]
     Hardening(#[from] HardeningError),
+    /// The constants of a hardening law make no law together.
+    #[error("option -hardening {}: {}", .0.law, .0.problem)]
+    ImpossibleLaw(#[from] ImpossibleLaw),
+    /// An option of another hardening law than the one in use.
+    #[error(
+        "option -{option} {given} has no effect with -hardening {law}: it belongs to -hardening {owner}; leave it out, or \
+         choose the other law"
+    )]
+    OtherLaw {
+        /// Name without the dash.
+        option: &'static str,
+        /// The value that was given.
+        given: String,
+        /// Names of the laws it belongs to.
+        owner: String,
+        /// Name of the law in use.
+        law: &'static str,
+    },
     /// The punch passes between two contact points. Lengths in mm.
     #[error(
         "the mesh cannot feel the punch: -punch_radius {} mm is smaller than the distance between contact points, \

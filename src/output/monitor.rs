@@ -60,7 +60,7 @@ struct Progress {
 
 impl Progress {
     fn whole(&self) -> f64 {
-        self.motion.way(self.motion.end())
+        self.motion.travel(self.motion.end())
     }
 
     /// Takes a step that ended at `t` (ms), now.
@@ -68,7 +68,7 @@ impl Progress {
         if self.recent.len() > RECENT {
             self.recent.pop_front();
         }
-        self.recent.push_back((now, self.motion.way(t)));
+        self.recent.push_back((now, self.motion.travel(t)));
     }
 
     fn done(&self) -> f64 {

@@ -68,7 +68,6 @@ fn facts(
     let motion = loading.motion();
     let sum = |part: fn(&Share) -> usize| shares.iter().map(part).sum::<usize>();
     let yields = |p: f64| format!("{:.1}", material.hardening.yield_stress(p).0);
-    let (pieces, last) = material.hardening.pieces();
     let edge = sheet.half_length() / discretisation.nx as f64;
     let mut facts = vec![
         (
@@ -115,10 +114,8 @@ fn facts(
         (
             "hardening",
             format!(
-                "{}: {} pieces; yields at {} MPa, at {} after 5 %, {} after 20 %; with its last slope beyond a plastic \
-                 strain of {last:.3}",
-                material.hardening_file,
-                pieces,
+                "{}; yields at {} MPa, at {} after 5 %, {} after 20 %",
+                material.hardening_in_words(),
                 number(material.hardening.initial()),
                 yields(0.05),
                 yields(0.2)
