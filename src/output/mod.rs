@@ -40,4 +40,4 @@ pub(crate) use number::number;
 pub use record::StepRecord;
 pub use report::Report;
 pub use summary::Summary;
-pub use verdict::{Tolerance, Verdict, VerdictRow, VerdictTable};
+pub use verdict::{Comparison, Tolerance, Verdict, VerdictRow, VerdictTable};
