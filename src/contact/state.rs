@@ -15,6 +15,16 @@ pub enum ContactState {
 }
 
 impl ContactState {
+    /// The state of a point that slips against this friction force on the sheet, which counts along increasing arc
+    /// length: friction opposes the slip.
+    pub fn slipping_against(friction: f64) -> Self {
+        if friction < 0.0 {
+            Self::SlipForward
+        } else {
+            Self::SlipBackward
+        }
+    }
+
     /// Whether the point carries a force.
     pub fn is_closed(self) -> bool {
         self != Self::Open

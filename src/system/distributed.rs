@@ -10,6 +10,7 @@ use petsc::{Evaluation, Failure, Matrix, MatrixRef, Scatter, Vector, VectorRef};
 
 use super::evaluate::ElementFailure;
 use super::{LocalSystem, Measures, Numbering, PartialMeasures, Problem, UNKNOWNS_PER_POINT};
+use crate::contact::ContactState;
 use crate::mesh::{Partition, PartitionError, partition};
 
 /// The system could not be set up or evaluated.
@@ -358,14 +359,13 @@ impl System {
         Ok(Measures::from_reduced(&all, local.problem().whole_sheet))
     }
 
-    /// Status of this rank's contact points at an iterate: 0 open, 1 in contact, 2 slipping forwards,
-    /// 3 backwards.
+    /// States of this rank's contact points at an iterate. Collective.
     ///
     /// # Errors
     /// If PETSc fails.
-    pub fn contact_status(&self, t: f64, u: &VectorRef) -> petsc::Result<Vec<u8>> {
+    pub fn contact_states(&self, t: f64, u: &VectorRef) -> petsc::Result<Vec<ContactState>> {
         let values = self.local_values(u)?;
-        Ok(self.local().contact_status(t, &values))
+        Ok(self.local().contact_states(t, &values))
     }
 
     /// Sums of counts over the ranks. Collective.

@@ -8,10 +8,15 @@ use std::sync::Arc;
 
 use super::problem::{Factor, NodalValue, Tool};
 use super::{Numbering, Problem, UNKNOWNS_PER_POINT};
-use crate::contact::{ContactLaw, ContactSample, Friction, FrictionState, PointPosition};
+use crate::contact::{
+    ContactLaw, ContactSample, ContactState, Friction, FrictionState, PointPosition,
+};
 use crate::element::Quad8;
 use crate::material::PointState;
 use crate::mesh::{Partition, SurfaceSide};
+
+/// Committed friction this close to its limit, as a share of it, is at the limit.
+const AT_LIMIT: f64 = 1e-9;
 
 /// A contact point of this rank.
 #[derive(Clone, Debug)]
@@ -44,13 +49,20 @@ impl LocalContact {
         )
     }
 
-    /// Whether the committed friction is at its limit for this multiplier.
-    pub fn slips(&self, multiplier: f64) -> bool {
-        let limit = self
-            .law
-            .friction
-            .map_or(0.0, |friction| friction.coefficient * multiplier);
-        self.state.traction.abs() >= limit * (1.0 - 1e-9)
+    /// Its state at the accepted multiplier and gap (mm), with the committed friction.
+    pub fn committed_state(&self, multiplier: f64, gap: f64) -> ContactState {
+        if gap > 0.0 || multiplier <= 0.0 {
+            return ContactState::Open;
+        }
+        let traction = self.state.traction;
+        match self.law.friction {
+            Some(Friction { coefficient, .. })
+                if traction.abs() >= coefficient * multiplier * (1.0 - AT_LIMIT) =>
+            {
+                ContactState::slipping_against(traction)
+            }
+            _ => ContactState::Stick,
+        }
     }
 }
 

@@ -3,13 +3,15 @@
 use super::evaluate::ElementFailure;
 use super::local::LocalContact;
 use super::{LocalSystem, System, SystemError};
+use crate::contact::ContactState;
 use crate::element::{NODES, gauss_points};
 use crate::mesh::SurfaceSide;
 
 /// Values summed at a node over its elements and contact points: four stress components and the
 /// plastic strain (each weighted by one per element), the number of elements, contact force (N per
-/// mm of width) and contact length (mm).
-pub(super) const NODE_CHANNELS: usize = 8;
+/// mm of width) and contact length (mm), and of the force what points that stick, slip forward and slip
+/// backward carry.
+pub(super) const NODE_CHANNELS: usize = 12;
 
 /// What is known at a contact point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,10 +26,8 @@ pub struct ContactPointSample {
     pub gap: f64,
     /// Friction traction on the sheet along the tool, committed, MPa.
     pub friction: f64,
-    /// Whether friction is at its limit.
-    pub slips: bool,
-    /// Whether it carries a force.
-    pub active: bool,
+    /// Whether it carries a force and slips.
+    pub state: ContactState,
 }
 
 /// What is known at a node.
@@ -46,6 +46,10 @@ pub struct NodeSample {
     /// Signed distance to the tool the node's face can touch (inside the sheet: to the nearer tool),
     /// mm.
     pub gap: f64,
+    /// State of contact at the node; none where nothing can touch it: inside the sheet, and on a face
+    /// without a tool. It is that of the contact points on the half edges at the node: open if none of
+    /// them carries a force, otherwise the state of those that carry most of it.
+    pub contact_state: Option<ContactState>,
 }
 
 /// Extrapolates Gauss point values to the nodes of an element by a least squares bilinear fit.
@@ -79,13 +83,15 @@ impl System {
                 sum[first..first + 2].copy_from_slice(pair);
             }
         }
-        let gaps = self.local().nodal_gaps(t, u);
+        let local = self.local();
+        let gaps = local.nodal_gaps(t, u);
         let displacements = u.chunks_exact(2);
         Ok(sums
             .iter()
             .zip(gaps)
             .zip(displacements)
-            .map(|((sum, gap), displacement)| {
+            .enumerate()
+            .map(|(node, ((sum, gap), displacement))| {
                 let [xx, yy, zz, xy, plastic] = [0, 1, 2, 3, 4].map(|i| sum[i] / sum[5]);
                 let differences = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
                 NodeSample {
@@ -99,6 +105,9 @@ impl System {
                         0.0
                     },
                     gap,
+                    contact_state: local
+                        .touched_face(node)
+                        .map(|_| prevailing_state([sum[8], sum[9], sum[10]])),
                 }
             })
             .collect())
@@ -162,12 +171,20 @@ impl LocalSystem {
             }
         }
         for (point, contact) in self.contacts.iter().enumerate() {
-            let force = self.problem.young_modulus * u[self.multiplier(point)];
+            let m = self.multiplier(point);
+            let force = self.problem.young_modulus * u[m];
+            let state = contact.committed_state(u[m], u[m + 1]);
             let share =
                 half_edge_hats(&contact.position(&self.edge_positions(contact, u), t).shape);
             for (&node, share) in contact.nodes.iter().zip(share) {
                 sums[node][6] += share * force;
                 sums[node][7] += share * contact.length;
+                match state {
+                    ContactState::Open => {}
+                    ContactState::Stick => sums[node][8] += share * force,
+                    ContactState::SlipForward => sums[node][9] += share * force,
+                    ContactState::SlipBackward => sums[node][10] += share * force,
+                }
             }
         }
         Ok(sums)
@@ -176,7 +193,6 @@ impl LocalSystem {
     /// Signed distance of every local node to the tool its face can touch (inner nodes: to the
     /// nearer one) at time `t` (ms), mm.
     pub(super) fn nodal_gaps(&self, t: f64, u: &[f64]) -> Vec<f64> {
-        let thickness = self.problem.mesh.nodes[self.problem.mesh.point_a][1];
         let gap = |side: SurfaceSide, x: [f64; 2]| {
             let tool = self.problem.tool(side);
             tool.map_or(f64::MAX, |tool| tool.distance(x, t).value)
@@ -186,34 +202,45 @@ impl LocalSystem {
             .enumerate()
             .map(|(n, [x, y])| {
                 let now = [x + u[2 * n], y + u[2 * n + 1]];
-                if *y <= 0.0 {
-                    gap(SurfaceSide::Bottom, now)
-                } else if *y >= thickness {
-                    gap(SurfaceSide::Top, now)
-                } else {
-                    gap(SurfaceSide::Bottom, now).min(gap(SurfaceSide::Top, now))
+                match self.face(n) {
+                    Some(side) => gap(side, now),
+                    None => gap(SurfaceSide::Bottom, now).min(gap(SurfaceSide::Top, now)),
                 }
             })
             .collect()
     }
 
-    /// Status of this rank's contact points at time `t` (ms) and local unknowns `u`: 0 open, 1 in
-    /// contact, 2 slipping forwards, 3 backwards.
-    pub fn contact_status(&self, t: f64, u: &[f64]) -> Vec<u8> {
-        let status = |(point, contact): (usize, &LocalContact)| {
+    /// The face of the sheet a local node lies on; none inside.
+    fn face(&self, node: usize) -> Option<SurfaceSide> {
+        let thickness = self.problem.mesh.nodes[self.problem.mesh.point_a][1];
+        match self.coordinates[node][1] {
+            y if y <= 0.0 => Some(SurfaceSide::Bottom),
+            y if y >= thickness => Some(SurfaceSide::Top),
+            _ => None,
+        }
+    }
+
+    /// The face of the sheet a local node lies on, if a tool can touch it there.
+    fn touched_face(&self, node: usize) -> Option<SurfaceSide> {
+        self.face(node)
+            .filter(|&side| self.problem.tool(side).is_some())
+    }
+
+    /// States of this rank's contact points at an iterate: time `t` (ms) and local unknowns `u`.
+    pub fn contact_states(&self, t: f64, u: &[f64]) -> Vec<ContactState> {
+        let state = |(point, contact): (usize, &LocalContact)| {
             let m = self.multiplier(point);
             if u[m + 1] > 0.0 || u[m] <= 0.0 {
-                return 0;
+                return ContactState::Open;
             }
             let position = self.contact_position(contact, t, u);
             let traction = contact.law.traction(&position, u[m], &contact.state);
             match traction.by_multiplier {
-                0.0 => 1,
-                slope if slope > 0.0 => 2,
-                _ => 3,
+                0.0 => ContactState::Stick,
+                _ => ContactState::slipping_against(traction.value),
             }
         };
-        self.contacts.iter().enumerate().map(status).collect()
+        self.contacts.iter().enumerate().map(state).collect()
     }
 
     /// Where one of this rank's contact points lies on the undeformed sheet (mm; of a moving point the middle of its
@@ -242,11 +269,24 @@ impl LocalSystem {
                     pressure: self.problem.young_modulus * u[m] / contact.length,
                     gap: position.distance.value,
                     friction: self.problem.young_modulus * contact.state.traction / contact.length,
-                    slips: contact.slips(u[m]),
-                    active: u[m + 1] <= 0.0 && u[m] > 0.0,
+                    state: contact.committed_state(u[m], u[m + 1]),
                 }
             })
             .collect()
+    }
+}
+
+/// The state that most of the force is carried in, of what sticking points and those that slip forward
+/// and backward carry; open if nothing is carried.
+fn prevailing_state([stick, forward, backward]: [f64; 3]) -> ContactState {
+    if stick.max(forward).max(backward) <= 0.0 {
+        ContactState::Open
+    } else if stick >= forward.max(backward) {
+        ContactState::Stick
+    } else if forward >= backward {
+        ContactState::SlipForward
+    } else {
+        ContactState::SlipBackward
     }
 }
 

@@ -1,5 +1,7 @@
 //! Watches a Newton solve: how its residual went, and which contact points could not make up their minds.
 
+use crate::contact::ContactState;
+
 /// Status of the contact points is looked at in the last iterations a solve may have: looking costs a little, and a
 /// solve that ends earlier converged.
 const LAST_ITERATIONS: usize = 6;
@@ -12,8 +14,8 @@ const SAME: f64 = 0.02;
 #[derive(Clone, Debug, Default)]
 pub(in crate::run) struct SolveWatch {
     norms: Vec<f64>,
-    /// Status of this rank's contact points at the last look: see `System::contact_status`.
-    status: Vec<u8>,
+    /// States of this rank's contact points at the last look.
+    states: Vec<ContactState>,
     changes: Vec<Changes>,
 }
 
@@ -49,17 +51,17 @@ impl SolveWatch {
         iteration + LAST_ITERATIONS >= most
     }
 
-    /// Takes the status of this rank's points.
-    pub(in crate::run) fn status(&mut self, now: Vec<u8>) {
+    /// Takes the states of this rank's points.
+    pub(in crate::run) fn states(&mut self, now: Vec<ContactState>) {
         self.changes.resize(now.len(), Changes::default());
-        for ((old, new), changes) in self.status.iter().zip(&now).zip(&mut self.changes) {
-            if (*old == 0) != (*new == 0) {
+        for ((old, new), changes) in self.states.iter().zip(&now).zip(&mut self.changes) {
+            if old.is_closed() != new.is_closed() {
                 changes.closing += 1;
             } else if old != new {
                 changes.slipping += 1;
             }
         }
-        self.status = now;
+        self.states = now;
     }
 
     /// Residual norms of the solve, mm.
@@ -199,8 +201,22 @@ mod tests {
         for iteration in 0..10 {
             watch.residual(iteration, 1.0);
             // The first opens and closes, the second closes once, the third sticks and slips.
-            let turn = iteration as u8 % 2;
-            watch.status(vec![turn, u8::from(iteration > 4), 1 + turn]);
+            let even = iteration % 2 == 0;
+            let closed = |is| {
+                if is {
+                    ContactState::Stick
+                } else {
+                    ContactState::Open
+                }
+            };
+            let slips = |is| {
+                if is {
+                    ContactState::SlipForward
+                } else {
+                    ContactState::Stick
+                }
+            };
+            watch.states(vec![closed(!even), closed(iteration > 4), slips(!even)]);
         }
         let flips: Vec<_> = watch.flips().collect();
         assert_eq!(flips, [(0, Flip::Closing), (2, Flip::Slipping)]);

@@ -11,6 +11,7 @@ use mpi::traits::Communicator;
 
 use super::checkpoint::{Resumed, RunState, STATE};
 use crate::case::Case;
+use crate::contact::ContactState;
 use crate::output::folder::{CONTACT, FIELDS, HISTORY, TOOLS};
 use crate::output::{
     Arrays, ContactFile, ContactSample, FieldSample, History, Monitor, OutputDir, OutputError,
@@ -208,11 +209,7 @@ impl Recorder {
                 contact_pressure: point.pressure,
                 friction_traction: point.friction,
                 gap: point.gap,
-                contact_status: if point.active {
-                    1 + i32::from(point.slips)
-                } else {
-                    0
-                },
+                contact_status: point.state.code(),
             })
             .collect();
         self.sheet.write(t, &samples)?;
@@ -229,6 +226,6 @@ fn field_sample(node: &NodeSample) -> FieldSample {
         equivalent_plastic_strain: node.equivalent_plastic_strain,
         contact_pressure: node.contact_pressure,
         gap: node.gap,
-        contact_status: i32::from(node.contact_pressure > 0.0),
+        contact_status: node.contact_state.map_or(-1, ContactState::code),
     }
 }

@@ -23,6 +23,7 @@ use super::springback::Springback;
 use super::step_size::StepControl;
 use super::stop_watch::StopWatch;
 use crate::case::{Case, Dynamics};
+use crate::contact::ContactState;
 use crate::system::{FieldSampler, System};
 use crate::tool::PunchMotion;
 
@@ -50,8 +51,8 @@ pub(super) struct Simulation {
     accepted_time: Cell<f64>,
     extrapolate: bool,
     show_iterations: bool,
-    /// Contact status of this rank's points at the last iteration shown.
-    status: RefCell<Vec<u8>>,
+    /// States of this rank's contact points at the last iteration shown.
+    states: RefCell<Vec<ContactState>>,
     /// Length of the step being tried, ms.
     attempted: Cell<f64>,
     /// Time it is to reach, ms.
@@ -130,7 +131,7 @@ impl Simulation {
             accepted_time: Cell::new(0.0),
             extrapolate: stepping.extrapolate,
             show_iterations: case.output.iterations,
-            status: RefCell::default(),
+            states: RefCell::default(),
             attempted: Cell::new(0.0),
             attempted_time: Cell::new(0.0),
             expected: Cell::new(0.0),

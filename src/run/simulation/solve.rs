@@ -55,7 +55,7 @@ impl Simulation {
         watch.residual(iteration, check.residual_norm);
         if SolveWatch::looks(iteration, self.most_iterations) {
             let t = self.attempted_time.get();
-            watch.status(self.system.contact_status(t, snes.solution()?)?);
+            watch.states(self.system.contact_states(t, snes.solution()?)?);
         }
         Ok(())
     }
@@ -163,8 +163,8 @@ impl Simulation {
     ) -> Result<(), CallbackError> {
         let now = self
             .system
-            .contact_status(self.attempted_time.get(), snes.solution()?)?;
-        let mut before = self.status.borrow_mut();
+            .contact_states(self.attempted_time.get(), snes.solution()?)?;
+        let mut before = self.states.borrow_mut();
         let changed = if before.len() == now.len() {
             now.iter()
                 .zip(before.iter())
@@ -174,8 +174,8 @@ impl Simulation {
             0
         };
         let counts = self.system.count_over_ranks([
-            now.iter().filter(|&&s| s > 0).count(),
-            now.iter().filter(|&&s| s > 1).count(),
+            now.iter().filter(|state| state.is_closed()).count(),
+            now.iter().filter(|state| state.slips()).count(),
             changed,
         ]);
         let [active, slipping, changed] = counts;
