@@ -30,5 +30,5 @@ pub use monitor::Monitor;
 pub use record::StepRecord;
 pub use report::Report;
 pub use summary::{Diagnosis, Summary};
-pub use verdict::{Tolerance, Verdict, VerdictRow, VerdictTable};
+pub use verdict::{Comparison, Tolerance, Verdict, VerdictRow, VerdictTable};
 pub use vtkhdf::{ContactFile, SheetFile, SheetPart, ToolsFile};

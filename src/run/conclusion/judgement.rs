@@ -1,6 +1,6 @@
-//! What a run is judged by: the reference values of its case, and the certificate of every step.
+//! What a run is judged by: the reference and regression values of its case, and the certificate of every step.
 
-use crate::case::{self, Case, Instant, ReferenceValue};
+use crate::case::{self, Case, Instant, Origin, ReferenceValue};
 use crate::output::{StepRecord, Tolerance, VerdictRow, VerdictTable};
 use crate::run::error::RunError;
 use crate::run::ledger::LEAST_FORCE;
@@ -21,8 +21,9 @@ pub(super) fn judge(
 ) -> Result<VerdictTable, RunError> {
     let mut table = VerdictTable::default();
     if finished {
-        for value in case.reference_values()? {
-            table.rows.push(VerdictRow::new(
+        let values = case.reference_values()?.into_iter();
+        for value in values.chain(case.regression_values()?) {
+            let row = VerdictRow::new(
                 format!("{}, {}", value.quantity, when(&value)),
                 computed(case, records, &value),
                 value.value,
@@ -32,7 +33,11 @@ pub(super) fn judge(
                 },
                 value.unit,
                 value.source,
-            ));
+            );
+            table.rows.push(match value.origin {
+                Origin::Independent => row,
+                Origin::Own => row.regression(),
+            });
         }
     }
     if records.is_empty() {
@@ -92,8 +97,8 @@ fn when(value: &ReferenceValue) -> String {
     match value.when {
         Instant::Travel(depth) => format!("d = {depth} mm"),
         Instant::FullStroke => "full stroke".to_owned(),
-        Instant::LargestWhileLoading => "largest".to_owned(),
-        Instant::EndOfUnloading => "end".to_owned(),
+        Instant::LargestWhileLoading => "largest while loading".to_owned(),
+        Instant::EndOfUnloading => "end of unloading".to_owned(),
         Instant::Withdrawn => "tools withdrawn".to_owned(),
     }
 }
