@@ -37,7 +37,7 @@ impl Subdomain {
                     pressure: young * u[m] / contact.length,
                     gap: position.distance.value,
                     friction: young * committed.traction / contact.length,
-                    state: contact.committed_state(u[m], u[m + 1], committed),
+                    state: contact.law.committed_state(u[m], u[m + 1], committed),
                 }
             })
             .collect()
@@ -50,15 +50,9 @@ impl Subdomain {
         points
             .map(|(point, (contact, committed))| {
                 let m = self.multiplier(point);
-                if u[m + 1] > 0.0 || u[m] <= 0.0 {
-                    return ContactState::Open;
-                }
                 let position = self.contact_position(contact, committed, t, u);
                 let traction = contact.law.traction(&position, u[m], committed);
-                match traction.by_multiplier {
-                    0.0 => ContactState::Stick,
-                    _ => ContactState::slipping_against(traction.value),
-                }
+                traction.state_at(u[m + 1])
             })
             .collect()
     }

@@ -3,7 +3,7 @@
 use mpi::traits::Communicator;
 use petsc::Failure;
 
-use crate::element::SinglePointFailure;
+use crate::element::GaussPointFailure;
 use crate::mesh::PartitionError;
 use crate::ranks::{broadcast_bytes, lowest_failing};
 
@@ -63,7 +63,7 @@ pub struct ElementFailure {
     /// Its current position, mm.
     pub position: [f64; 2],
     /// What is wrong.
-    pub cause: SinglePointFailure,
+    pub cause: GaussPointFailure,
 }
 
 /// An element that cannot be evaluated, the same on every rank.

@@ -5,9 +5,10 @@ use mpi::traits::Communicator;
 use super::error::ElementFailure;
 use super::history::History;
 use super::measure_sums::{Maxima, Sums};
-use super::subdomain::{Subdomain, interpolate};
+use super::subdomain::Subdomain;
 use crate::element::edge_shape;
 use crate::mesh::SurfaceSide;
+use crate::plane::interpolate;
 
 /// The arm's fit uses the outer sixth of the half sheet: beyond the die's shoulder it is free of
 /// stress, so it is straight unless it yielded before.
@@ -105,7 +106,7 @@ impl Subdomain {
                 SurfaceSide::Top => sums.punch_force -= upward,
                 SurfaceSide::Bottom => sums.die_force += upward,
             }
-            sums.contact_energy += 0.5 * force * contact.law.give * u[m];
+            sums.contact_energy += 0.5 * force * contact.law.compliance * u[m];
             if gap <= 0.0 && force > 0.0 {
                 sums.active_points += 1.0;
             }
@@ -113,7 +114,7 @@ impl Subdomain {
             if contact.first_of_edge {
                 for k in 0..=PENETRATION_PROBES {
                     let shape = edge_shape(2.0 * k as f64 / PENETRATION_PROBES as f64 - 1.0);
-                    let x = interpolate(&shape, &nodes);
+                    let x = interpolate(shape, &nodes);
                     penetration = penetration.max(-contact.tool.distance(x, t).value);
                 }
             }

@@ -7,6 +7,7 @@ use super::subdomain::Subdomain;
 use crate::contact::ContactState;
 use crate::element::{NODES, Quadrature, gauss_points};
 use crate::mesh::SurfaceSide;
+use crate::plane::determinant;
 
 /// What is known at a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -195,11 +196,11 @@ impl Subdomain {
                 let (response, f, _) = self.kernels[element]
                     .point_response(point, &values, &self.problem.material, state)
                     .map_err(|cause| self.element_failure(element, u, cause))?;
-                let volume_ratio = f[0][0] * f[1][1] - f[0][1] * f[1][0];
-                let [xx, xy, yy, zz] = response.kirchhoff.map(|s| s / volume_ratio);
+                let volume_ratio = determinant(&f);
+                let cauchy = response.kirchhoff.map(|s| s / volume_ratio);
                 for (&node, weight) in nodes.iter().zip(weights[point]) {
                     let sum = &mut sums[node];
-                    for (sum, stress) in sum.stress.iter_mut().zip([xx, yy, zz, xy]) {
+                    for (sum, stress) in sum.stress.iter_mut().zip(cauchy.components()) {
                         *sum += weight * stress;
                     }
                     sum.plastic_strain += weight * state.equivalent_plastic_strain;
@@ -213,7 +214,7 @@ impl Subdomain {
         {
             let m = self.multiplier(point);
             let force = self.problem.young_modulus * u[m];
-            let state = contact.committed_state(u[m], u[m + 1], committed);
+            let state = contact.law.committed_state(u[m], u[m + 1], committed);
             let position = self.contact_position(contact, committed, t, u);
             let shares = half_edge_hats(&position.shape);
             for (&node, share) in contact.nodes.iter().zip(shares) {

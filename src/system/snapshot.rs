@@ -8,6 +8,7 @@ use super::history::History;
 use super::mesh_order::{MeshOrder, gather_blocks};
 use crate::contact::FrictionState;
 use crate::material::PointState;
+use crate::plane::PlaneTensor;
 
 /// Numbers per Gauss point: C_p⁻¹ (xx, xy, yy, zz) and equivalent plastic strain.
 const PER_GAUSS_POINT: usize = 5;
@@ -101,7 +102,7 @@ impl Snapshot {
 
 fn gauss_point(state: &PointState) -> [f64; PER_GAUSS_POINT] {
     let PointState {
-        cp_inverse: [xx, xy, yy, zz],
+        cp_inverse: PlaneTensor { xx, yy, zz, xy },
         equivalent_plastic_strain,
     } = *state;
     [xx, xy, yy, zz, equivalent_plastic_strain]
@@ -110,7 +111,7 @@ fn gauss_point(state: &PointState) -> [f64; PER_GAUSS_POINT] {
 fn point_state(numbers: &[f64; PER_GAUSS_POINT]) -> PointState {
     let [xx, xy, yy, zz, equivalent_plastic_strain] = *numbers;
     PointState {
-        cp_inverse: [xx, xy, yy, zz],
+        cp_inverse: PlaneTensor { xx, yy, zz, xy },
         equivalent_plastic_strain,
     }
 }

@@ -9,14 +9,10 @@ use std::sync::Arc;
 use super::error::ElementFailure;
 use super::numbering::{Numbering, UNKNOWNS_PER_POINT};
 use super::problem::{Factor, NodalValue, Problem, Tool};
-use crate::contact::{
-    ContactLaw, ContactSample, ContactState, Friction, FrictionState, PointPosition,
-};
-use crate::element::{Quad8, SinglePointFailure};
+use crate::contact::{ContactLaw, ContactSample, Friction, FrictionState, PointPosition};
+use crate::element::{GaussPointFailure, Quad8};
 use crate::mesh::{Partition, SurfaceSide};
-
-/// Committed friction this close to its limit, as a share of it, is at the limit.
-const AT_LIMIT: f64 = 1e-9;
+use crate::plane::interpolate;
 
 /// A contact point of this rank.
 #[derive(Clone, Debug)]
@@ -51,34 +47,8 @@ impl LocalContact {
 
     /// Where it lies between these positions of its edge's nodes; a moving point in its middle position.
     pub fn reference(&self, nodes: &[[f64; 2]; 3]) -> [f64; 2] {
-        interpolate(&self.law.shape, nodes)
+        interpolate(self.law.shape, nodes)
     }
-
-    /// Its state at the accepted multiplier and gap (mm), with the committed friction.
-    pub fn committed_state(
-        &self,
-        multiplier: f64,
-        gap: f64,
-        committed: &FrictionState,
-    ) -> ContactState {
-        if gap > 0.0 || multiplier <= 0.0 {
-            return ContactState::Open;
-        }
-        let traction = committed.traction;
-        match self.law.friction {
-            Some(Friction { coefficient, .. })
-                if traction.abs() >= coefficient * multiplier * (1.0 - AT_LIMIT) =>
-            {
-                ContactState::slipping_against(traction)
-            }
-            _ => ContactState::Stick,
-        }
-    }
-}
-
-/// The point of an edge with these shape functions.
-pub(super) fn interpolate(shape: &[f64; 3], nodes: &[[f64; 2]; 3]) -> [f64; 2] {
-    [0, 1].map(|k| (0..3).map(|a| shape[a] * nodes[a][k]).sum())
 }
 
 /// A prescribed displacement or a load at a local unknown.
@@ -257,7 +227,7 @@ impl Subdomain {
         &self,
         element: usize,
         u: &[f64],
-        cause: SinglePointFailure,
+        cause: GaussPointFailure,
     ) -> ElementFailure {
         let corner = self.connectivity[element][0];
         let [x, y] = self.coordinates[corner];
@@ -282,12 +252,12 @@ fn contact_law(problem: &Problem, sample: &ContactSample, edge_length: f64) -> C
     let length = sample.weight * edge_length;
     let friction = (problem.friction_coefficient > 0.0).then(|| Friction {
         coefficient: problem.friction_coefficient,
-        give: problem.friction_compliance * problem.young_modulus / length,
+        compliance: problem.friction_compliance * problem.young_modulus / length,
     });
     ContactLaw {
         shape: sample.shape,
         moves_on: sample.moves.then_some(edge_length),
-        give: problem.contact_compliance * problem.young_modulus / length,
+        compliance: problem.contact_compliance * problem.young_modulus / length,
         friction,
     }
 }

@@ -182,7 +182,7 @@ impl Subdomain {
         out[AT.force_u].copy_from_slice(tangent.force_u.as_flattened());
         out[AT.force_multiplier].copy_from_slice(&tangent.force_multiplier);
         out[AT.closure_u].copy_from_slice(&tangent.closure_u);
-        out[AT.closure_multiplier] = tangent.closure_multiplier;
+        out[AT.closure_multiplier] = tangent.compliance;
         out[AT.closure_gap] = tangent.closure_gap;
         out[AT.complementarity_u].copy_from_slice(&tangent.complementarity_u);
         out[AT.complementarity_multiplier] = tangent.complementarity_multiplier;

@@ -20,6 +20,7 @@ pub const WALL: Case = Case {
 Spectral radius 0 as in a simulation, 8 steps per element for 2 L/c, contact compliance 1e-7 mm/MPa. The front is a jump, which a method of second order smears with order 2/3: so much velocity and energy is lost. \
 The momentum must balance exactly and the energy must not grow. Tolerance: 1 % for the pressure between the fronts, 2 % for the time.",
     quick: false,
+    two_ranks: false,
     run: wall,
 };
 

@@ -2,8 +2,7 @@
 
 use petsc::{Alpha2State, Vector, VectorRef};
 
-use crate::run::counts::Counts;
-use crate::run::ledger::Ledger;
+use crate::run::ledger::{Counts, Ledger};
 use crate::run::springback::Springback;
 use crate::system::{History, System};
 use crate::tool::PunchMotion;

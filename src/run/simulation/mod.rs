@@ -18,11 +18,10 @@ use petsc::{Alpha2State, Ts, TsReason};
 
 use super::RunError;
 use super::checkpoint::{Resumed, RunState, hardening_checksum};
-use super::counts::Counts;
 use super::diagnosis::Refusal;
+use super::ledger::{Counts, Spent};
 use super::recorder::Recorder;
 use super::setup::{LinearSolve, defaults};
-use super::spent::Spent;
 use super::springback::Springback;
 use super::step_size::StepControl;
 use super::stop_watch::StopWatch;
