@@ -7,7 +7,7 @@
 //! complementarity  m·Δu + b Δλ + c Δg = r_g        inactive points only: Δg = 0 where g is at its bound
 //! ```
 //!
-//! which always gives `Δλ = λ_0 - s·Δu`, because ε > 0. What is left is `(J_uu - J_uλ s) Δu = r_u -
+//! from which always `Δλ = λ_0 - s·Δu`, because ε > 0. What is left is `(J_uu - J_uλ s) Δu = r_u -
 //! J_uλ λ_0`: the pattern of the elements, whatever the active set. An open point has s = 0, and
 //! without friction the condensed matrix is symmetric.
 
@@ -60,7 +60,7 @@ struct EliminatedPoint {
     /// λ_0 = `by_closure` r_λ + `by_complementarity` r_g.
     by_closure: f64,
     by_complementarity: f64,
-    /// The closure row, which gives the gap.
+    /// The closure row, from which the gap follows.
     closure_u: [f64; 6],
     closure_multiplier: f64,
     closure_gap: f64,

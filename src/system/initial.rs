@@ -4,7 +4,7 @@ use super::history::History;
 use super::subdomain::Subdomain;
 use crate::mesh::SurfaceSide;
 
-/// Multiplier of a point that holds the sheet, mm: tells the solver that the point carries, and is far below any
+/// Multiplier of a point that holds the sheet, mm: it marks the point as one that carries, and is far below any
 /// force that matters.
 const HOLDS: f64 = 1e-9;
 /// Gaps that exceed the smallest one by no more than this are as small, mm.
@@ -29,7 +29,7 @@ impl Subdomain {
     ///
     /// The flat sheet lies on the die without force: every point of the die's flat is closed and none
     /// carries, so nothing would hold the sheet in the first Newton step. A tiny multiplier at the one
-    /// point that will carry, the die's innermost touching one, and at the punch's closest one, tells
+    /// point that will carry, the die's innermost touching one, and at the punch's closest one, shows
     /// the solver where the sheet is held. With a multiplier at all touching points instead the sheet peels off
     /// the die one point after the other. `smallest` takes the smallest number over the ranks.
     pub(super) fn start_values(&self, smallest: impl Fn(f64) -> f64) -> Vec<StartValues> {

@@ -115,27 +115,16 @@ impl Subdomain {
             .collect();
         let mut contacts = Vec::new();
         for (index, edge) in mesh.surface.iter().enumerate() {
-            let Some(tool) = problem.tool(edge.side) else {
-                continue;
-            };
             if partition[edge.element] != rank {
                 continue;
             }
-            let edge_nodes = mesh.edge_nodes(edge);
-            let [left, right] = [mesh.nodes[edge_nodes[0]], mesh.nodes[edge_nodes[1]]];
-            let edge_length = (right[0] - left[0]).hypot(right[1] - left[1]);
-            let edge_nodes = edge_nodes.map(|n| local_of[&n]);
-            for (k, sample) in problem.contact_samples(index).iter().enumerate() {
-                contacts.push(LocalContact {
-                    side: edge.side,
-                    tool: Arc::clone(tool),
-                    nodes: edge_nodes,
-                    law: contact_law(&problem, sample, edge_length),
-                    length: sample.weight * edge_length,
-                    first_of_edge: k == 0,
-                });
+            for (k, contact) in contacts_of(&problem, index, &local_of)
+                .into_iter()
+                .enumerate()
+            {
                 let row = (numbering.edge_row[index] + UNKNOWNS_PER_POINT * k) as i32;
                 rows.extend([row, row + 1]);
+                contacts.push(contact);
             }
         }
         let local_value = |value: &NodalValue| {
@@ -245,6 +234,31 @@ fn nodes_of<'a>(elements: impl Iterator<Item = &'a [usize; 8]>) -> Vec<usize> {
     nodes.sort_unstable();
     nodes.dedup();
     nodes
+}
+
+/// The contact points of a surface edge of the mesh; none on a face without a tool.
+fn contacts_of(
+    problem: &Problem,
+    index: usize,
+    local_of: &HashMap<usize, usize>,
+) -> Vec<LocalContact> {
+    let (mesh, edge) = (&problem.mesh, &problem.mesh.surface[index]);
+    let Some(tool) = problem.tool(edge.side) else {
+        return Vec::new();
+    };
+    let nodes = mesh.edge_nodes(edge);
+    let [left, right] = [mesh.nodes[nodes[0]], mesh.nodes[nodes[1]]];
+    let edge_length = (right[0] - left[0]).hypot(right[1] - left[1]);
+    let point = |(k, sample): (usize, ContactSample)| LocalContact {
+        side: edge.side,
+        tool: Arc::clone(tool),
+        nodes: nodes.map(|n| local_of[&n]),
+        law: contact_law(problem, &sample, edge_length),
+        length: sample.weight * edge_length,
+        first_of_edge: k == 0,
+    };
+    let samples = problem.contact_samples(index).into_iter();
+    samples.enumerate().map(point).collect()
 }
 
 /// The constants of a contact point on an edge of this length, mm.

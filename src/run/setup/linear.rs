@@ -75,7 +75,7 @@ pub(in crate::run) struct LinearSolve {
 }
 
 impl LinearSolve {
-    /// Decides by the options, and gives PETSc's own solve its defaults. Collective.
+    /// Decides by the options, and sets the defaults of what is chosen. Collective.
     pub fn chosen(system: &Rc<System>) -> petsc::Result<Rc<Self>> {
         let choice = choose()?;
         let condensed = choice.map(|choice| CondensedSolve::new(system, choice));

@@ -18,7 +18,7 @@ impl Simulation {
         linear: &Rc<LinearSolve>,
     ) -> Result<(), RunError> {
         let matrix = linear.matrix()?;
-        let start = &self.progress.borrow().accepted.unknowns;
+        let start = &self.progress.borrow().accepted.unknowns.to_owned()?;
         let (for_residual, for_jacobian) = (Rc::clone(self), Rc::clone(self));
         let linear = Rc::clone(linear);
         match self.settings.dynamics {

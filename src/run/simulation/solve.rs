@@ -1,5 +1,5 @@
-//! What happens within one Newton solve: where it starts, how far its steps go, when it is done or
-//! given up.
+//! What happens around and within one Newton solve: where it starts, when it has converged, and what becomes of one that
+//! has not.
 
 use petsc::{
     CallbackError, ConvergenceCheck, LineSearchInfo, SnesReason, SnesRef, TsRef, VectorRef,
