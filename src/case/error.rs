@@ -178,14 +178,14 @@ pub enum CaseError {
     },
     /// The end of the sheet would be drawn over the shoulder. Lengths in mm.
     #[error(
-        "the sheet slips off the die's shoulder: at -stroke {stroke} mm the way round the punch to the shoulder is \
+        "the sheet slips off the die's shoulder: at -stroke {stroke} mm the path round the punch to the shoulder is \
          {path:.3} mm and half of -sheet_length is {half_length} mm; give a -sheet_length above {least_length:.3} mm \
          or a shorter stroke"
     )]
     SheetSlipsOff {
         /// Stroke of the punch.
         stroke: f64,
-        /// Way from the middle of the sheet round the punch to the shoulder.
+        /// Path from the middle of the sheet round the punch to the shoulder.
         path: f64,
         /// Half length of the sheet.
         half_length: f64,
@@ -220,18 +220,22 @@ pub enum CaseError {
         /// Elements through the thickness.
         ny: usize,
     },
-    /// An option of PETSc that the program has to decide itself.
+    /// An option of PETSc's that the program has to decide itself.
     #[error(
-        "option -{option} {given}: the program chooses the steps itself, so only {allowed} works here; leave it out, and \
-         set the steps with -dt_initial, -dt_max, -dt_min or -fixed_steps_load"
+        "option -{option} {given}: {reason}{}; leave it out, and {instead}",
+        allowed.map_or_else(String::new, |allowed| format!(", so only {allowed} works here"))
     )]
-    NotYours {
+    Reserved {
         /// Name without the dash.
         option: &'static str,
         /// The value that was given.
         given: String,
-        /// The one value that can be given.
-        allowed: &'static str,
+        /// Why the program decides.
+        reason: &'static str,
+        /// The one value that can be given, if there is one.
+        allowed: Option<&'static str>,
+        /// What else to do.
+        instead: &'static str,
     },
     /// The table of reference values is malformed.
     #[error("reference values, line {line}: {problem}")]

@@ -17,6 +17,7 @@ mod option_file;
 mod provenance;
 mod reference;
 mod reference_force;
+mod reference_regression;
 mod table;
 mod unused;
 
@@ -31,6 +32,6 @@ pub use model::{
     Resuming, Sheet, Stepping, Tools,
 };
 pub use provenance::Difference;
-pub use reference::{Instant, ReferenceValue, Tolerance};
+pub use reference::{Instant, Origin, ReferenceValue, Tolerance};
 pub use reference_force::ReferenceForce;
 pub use unused::check_unused;

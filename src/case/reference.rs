@@ -8,15 +8,25 @@ const FRICTIONLESS: &str = include_str!("../../inputs/reference/values.csv");
 const WITH_FRICTION: &str = include_str!("../../inputs/reference/values-friction.csv");
 /// Coefficient of friction of the benchmark.
 const BENCHMARK_FRICTION: f64 = 0.1342;
-const HEADER: [&str; 7] = [
+const HEADER: [&str; 8] = [
     "id",
     "quantity",
     "unit",
     "value",
     "tolerance",
     "when",
+    "origin",
     "source",
 ];
+
+/// Who a value comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// Another code, a document, a closed solution.
+    Independent,
+    /// This program or an earlier study with the same equations: agreement says that nothing has changed, no more.
+    Own,
+}
 
 /// How far a result may be from the reference value.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,7 +52,7 @@ pub enum Instant {
     Withdrawn,
 }
 
-/// A value from elsewhere, with its source.
+/// A value to compare with, and its source.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReferenceValue {
     /// Short name by which a result is matched with it.
@@ -57,6 +67,8 @@ pub struct ReferenceValue {
     pub tolerance: Tolerance,
     /// When it is taken.
     pub when: Instant,
+    /// Whether it is a check from outside or a regression.
+    pub origin: Origin,
     /// Who says so.
     pub source: String,
 }
@@ -115,52 +127,62 @@ impl Case {
 }
 
 fn parse(text: &str) -> Result<Vec<ReferenceValue>, CaseError> {
+    let rows = rows(text, &HEADER)?;
+    let mut values: Vec<ReferenceValue> = Vec::new();
+    for (line, record) in rows {
+        let refuse = |problem| CaseError::ReferenceValues { line, problem };
+        let fields: Vec<&str> = record.iter().collect();
+        let value = parse_row(&fields).map_err(refuse)?;
+        if values.iter().any(|known| known.id == value.id) {
+            return Err(refuse(format!("the id {} is there twice", value.id)));
+        }
+        values.push(value);
+    }
+    Ok(values)
+}
+
+/// The rows of a table with this header, each with its line. Lines that begin with # are comments.
+pub(super) fn rows(
+    text: &str,
+    header: &[&str],
+) -> Result<Vec<(u64, csv::StringRecord)>, CaseError> {
     let mut reader = csv::ReaderBuilder::new()
         .comment(Some(b'#'))
         .has_headers(false)
         .flexible(true)
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
-    let mut values: Vec<ReferenceValue> = Vec::new();
-    let mut header_seen = false;
+    let mut found = None;
     for record in reader.records() {
         let record = record.map_err(|error| CaseError::ReferenceValues {
             line: error.position().map_or(0, csv::Position::line),
             problem: error.to_string(),
         })?;
         let line = record.position().map_or(0, csv::Position::line);
-        let refuse = |problem| CaseError::ReferenceValues { line, problem };
-        if !header_seen {
-            header_seen = true;
-            if record != HEADER[..] {
-                return Err(refuse(format!("the header is not {}", HEADER.join(","))));
+        let refuse = |problem| Err(CaseError::ReferenceValues { line, problem });
+        let Some(rows) = &mut found else {
+            if record != header[..] {
+                return refuse(format!("the header is not {}", header.join(",")));
             }
+            found = Some(Vec::new());
             continue;
+        };
+        if record.len() != header.len() {
+            let (given, wanted) = (record.len(), header.len());
+            return refuse(format!("{given} columns instead of {wanted}"));
         }
-        let value = parse_row(&record).map_err(refuse)?;
-        if values.iter().any(|known| known.id == value.id) {
-            return Err(refuse(format!("the id {} is there twice", value.id)));
-        }
-        values.push(value);
+        rows.push((line, record));
     }
-    if header_seen {
-        Ok(values)
-    } else {
-        Err(CaseError::ReferenceValues {
-            line: 1,
-            problem: "no header".to_owned(),
-        })
-    }
+    found.ok_or_else(|| CaseError::ReferenceValues {
+        line: 1,
+        problem: "no header".to_owned(),
+    })
 }
 
-fn parse_row(record: &csv::StringRecord) -> Result<ReferenceValue, String> {
-    let fields: Vec<&str> = record.iter().collect();
-    let [id, quantity, unit, value, tolerance, when, source] = fields[..] else {
-        return Err(format!(
-            "{} columns instead of {}",
-            fields.len(),
-            HEADER.len()
-        ));
+/// A value from its fields, in the order of the header.
+pub(super) fn parse_row(fields: &[&str]) -> Result<ReferenceValue, String> {
+    let [id, quantity, unit, value, tolerance, when, origin, source] = *fields else {
+        return Err(format!("{} fields", fields.len()));
     };
     Ok(ReferenceValue {
         id: id.to_owned(),
@@ -171,22 +193,31 @@ fn parse_row(record: &csv::StringRecord) -> Result<ReferenceValue, String> {
             Some(percent) => Tolerance::Relative(positive(percent.trim())? / 100.0),
             None => Tolerance::Absolute(positive(tolerance)?),
         },
-        when: match when {
-            "full stroke" => Instant::FullStroke,
-            "end of unloading" => Instant::EndOfUnloading,
-            "largest while loading" => Instant::LargestWhileLoading,
-            "tools withdrawn" => Instant::Withdrawn,
-            _ => match when.strip_prefix("d =") {
-                Some(travel) => Instant::Travel(positive(travel.trim())?),
-                None => {
-                    return Err(format!(
-                        "'{when}' is none of: d = number, full stroke, largest while loading, end of unloading, \
-                         tools withdrawn"
-                    ));
-                }
-            },
+        when: instant(when)?,
+        origin: match origin {
+            "independent" => Origin::Independent,
+            "own" => Origin::Own,
+            _ => return Err(format!("'{origin}' is neither independent nor own")),
         },
         source: source.to_owned(),
+    })
+}
+
+/// The instant a column "when" names.
+fn instant(text: &str) -> Result<Instant, String> {
+    Ok(match text {
+        "full stroke" => Instant::FullStroke,
+        "end of unloading" => Instant::EndOfUnloading,
+        "largest while loading" => Instant::LargestWhileLoading,
+        "tools withdrawn" => Instant::Withdrawn,
+        _ => match text.strip_prefix("d =") {
+            Some(travel) => Instant::Travel(positive(travel.trim())?),
+            None => {
+                return Err(format!(
+                    "'{text}' is none of: d = number, full stroke, largest while loading, end of unloading, tools withdrawn"
+                ));
+            }
+        },
     })
 }
 
@@ -222,13 +253,18 @@ mod tests {
     fn malformed_tables_are_refused_with_the_line() {
         assert_eq!(
             refusal("a,b,N,1,1"),
-            "reference values, line 3: 5 columns instead of 7"
+            "reference values, line 3: 5 columns instead of 8"
         );
-        assert!(refusal("a,b,N,x,1,full stroke,s").contains("line 3: 'x' is not a finite number"));
-        assert!(refusal("a,b,N,1,-1,full stroke,s").contains("'-1' is not positive"));
-        assert!(refusal("a,b,N,1,1,noon,s").contains("'noon' is none of"));
         assert!(
-            refusal("a,b,N,1,1,d = 2,s\na,b,N,1,1,d = 2,s")
+            refusal("a,b,N,x,1,full stroke,own,s").contains("line 3: 'x' is not a finite number")
+        );
+        assert!(refusal("a,b,N,1,-1,full stroke,own,s").contains("'-1' is not positive"));
+        assert!(refusal("a,b,N,1,1,noon,own,s").contains("'noon' is none of"));
+        assert!(
+            refusal("a,b,N,1,1,d = 2,they,s").contains("'they' is neither independent nor own")
+        );
+        assert!(
+            refusal("a,b,N,1,1,d = 2,own,s\na,b,N,1,1,d = 2,own,s")
                 .contains("line 4: the id a is there twice")
         );
         assert!(parse("").is_err());

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::error::CaseError;
 use super::model::Case;
 use super::option::Group;
-use super::reference::Instant;
+use super::reference::{Instant, Origin};
 use super::table::{self, TABLE};
 
 /// code_aster 15.2 on the same model without friction; the file says what it is.
@@ -31,14 +31,17 @@ struct Row {
 
 impl Case {
     /// The forces to show beside those of this case: the curve if the physics of loading is the benchmark's without
-    /// friction, whatever the mesh and the way back; and the forces among [`Case::reference_values`].
+    /// friction, whatever the mesh and the way back; and the independent forces among [`Case::reference_values`].
     ///
     /// # Errors
     /// None unless the program's own tables are broken, which the tests exclude.
     pub fn reference_force(&self) -> Result<ReferenceForce, CaseError> {
         let values = self.reference_values()?;
         let mut points = Vec::new();
-        for value in &values {
+        for value in values
+            .iter()
+            .filter(|value| value.origin == Origin::Independent)
+        {
             if let (true, Instant::Travel(depth)) = (value.id.starts_with("force"), value.when) {
                 points.push([depth, value.value, value.allowed_deviation()]);
             }
@@ -116,7 +119,7 @@ mod tests {
         let mut rough = reference.clone();
         rough.friction.coefficient = 0.1342;
         let force = rough.reference_force().unwrap();
-        assert!(force.curve.is_empty() && force.points.len() == 3);
+        assert!(force.curve.is_empty() && force.points.len() == 1);
         let mut thick = reference;
         thick.sheet.thickness = 0.9;
         assert_eq!(thick.reference_force().unwrap(), ReferenceForce::default());

@@ -4,7 +4,7 @@ use std::fmt::{self, Write as _};
 
 use serde::Serialize;
 
-use super::number::number;
+use crate::text::number;
 
 /// How far the computed value may be from the reference.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -50,6 +50,28 @@ impl fmt::Display for Verdict {
     }
 }
 
+/// What a row compares with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Comparison {
+    /// A value from outside: another code, a document, a closed solution.
+    Reference,
+    /// A value of our own, measured earlier: it says whether something has changed.
+    Regression,
+    /// A bound.
+    Limit,
+}
+
+impl fmt::Display for Comparison {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Reference => "reference",
+            Self::Regression => "regression",
+            Self::Limit => "limit",
+        })
+    }
+}
+
 /// One compared quantity.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct VerdictRow {
@@ -63,6 +85,8 @@ pub struct VerdictRow {
     pub tolerance: Tolerance,
     /// Unit of both values.
     pub unit: String,
+    /// What kind of value the reference is.
+    pub comparison: Comparison,
     /// Where the reference comes from.
     pub source: String,
     /// The outcome; it follows from the values above.
@@ -99,13 +123,27 @@ impl VerdictRow {
             reference,
             tolerance,
             unit,
+            comparison: match tolerance {
+                Tolerance::Relative(_) | Tolerance::Absolute(_) => Comparison::Reference,
+                Tolerance::AtMost | Tolerance::AtLeast => Comparison::Limit,
+            },
             source,
             verdict,
         }
     }
 
-    fn cells(&self) -> [String; 7] {
+    /// The same row with a reference that is our own: see [`Comparison::Regression`].
+    #[must_use]
+    pub fn regression(self) -> Self {
+        Self {
+            comparison: Comparison::Regression,
+            ..self
+        }
+    }
+
+    fn cells(&self) -> [String; 8] {
         [
+            self.comparison.to_string(),
             self.quantity.clone(),
             number(self.computed),
             number(self.reference),
@@ -117,16 +155,17 @@ impl VerdictRow {
     }
 }
 
-const HEADS: [&str; 7] = [
+const HEADS: [&str; 8] = [
+    "compared with",
     "quantity",
     "computed",
-    "reference",
+    "value",
     "tolerance",
     "unit",
     "source",
     "verdict",
 ];
-const RIGHT_ALIGNED: [bool; 7] = [false, true, true, true, false, false, false];
+const RIGHT_ALIGNED: [bool; 8] = [false, false, true, true, true, false, false, false];
 
 /// All compared quantities of a run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -180,7 +219,7 @@ impl VerdictTable {
             .map(|row| row.cells().map(|cell| cell.replace('|', "\\|")))
             .collect();
         let widths = widths(&cells);
-        let row = |cells: &[String; 7]| {
+        let row = |cells: &[String; 8]| {
             format!(
                 "| {} |\n",
                 line(cells, &widths, " | ").trim_end_matches('\n')
@@ -201,7 +240,7 @@ impl VerdictTable {
     }
 }
 
-fn widths(rows: &[[String; 7]]) -> [usize; 7] {
+fn widths(rows: &[[String; 8]]) -> [usize; 8] {
     let mut widths = HEADS.map(|head| head.chars().count());
     for row in rows {
         for (width, cell) in widths.iter_mut().zip(row) {
@@ -211,7 +250,7 @@ fn widths(rows: &[[String; 7]]) -> [usize; 7] {
     widths
 }
 
-fn line(cells: &[String; 7], widths: &[usize; 7], separator: &str) -> String {
+fn line(cells: &[String; 8], widths: &[usize; 8], separator: &str) -> String {
     let padded = cells
         .iter()
         .zip(widths)
@@ -254,8 +293,9 @@ mod tests {
                     -29.001,
                     Tolerance::Absolute(0.05),
                     "mm",
-                    "code_aster",
-                ),
+                    "version 0.1.0",
+                )
+                .regression(),
                 VerdictRow::new(
                     "largest penetration",
                     3.2e-9,
@@ -305,12 +345,12 @@ mod tests {
     fn the_text_is_aligned_and_counts_the_failures() {
         let text = table().text();
         let expected = "\
-quantity             computed  reference  tolerance  unit  source            verdict
-------------------------------------------------------------------------------------
-DY at A, punch side     -28.5      -28.5      0.1 %  mm    SSNP155 document  holds
-DY at A, sheet side     -29.4    -29.001      ±0.05  mm    code_aster        FAILS
-largest penetration  3.200e-9      0.001    at most  mm    own | limit       holds
-------------------------------------------------------------------------------------
+compared with  quantity             computed     value  tolerance  unit  source            verdict
+--------------------------------------------------------------------------------------------------
+reference      DY at A, punch side     -28.5     -28.5      0.1 %  mm    SSNP155 document  holds
+regression     DY at A, sheet side     -29.4   -29.001      ±0.05  mm    version 0.1.0     FAILS
+limit          largest penetration  3.200e-9     0.001    at most  mm    own | limit       holds
+--------------------------------------------------------------------------------------------------
 1 of 3 FAIL
 ";
         assert_eq!(text, expected, "{text}");
@@ -320,7 +360,7 @@ largest penetration  3.200e-9      0.001    at most  mm    own | limit       hol
     fn the_markdown_has_as_many_columns_in_every_row() {
         let text = table().markdown();
         for line in text.lines() {
-            assert_eq!(line.replace("\\|", "").matches('|').count(), 8, "{line}");
+            assert_eq!(line.replace("\\|", "").matches('|').count(), 9, "{line}");
         }
         assert!(text.contains("own \\| limit") && text.contains("FAILS"));
     }

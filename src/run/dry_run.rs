@@ -5,12 +5,15 @@ use std::io::stdout;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::{RunError, recorder};
+use super::error::RunError;
+use super::recorder;
+use super::step_size::landmarks;
 use crate::case::{Case, Dynamics};
 use crate::contact::ContactLocation;
 use crate::output::monitor::Monitor;
-use crate::output::{OutputDir, number, plot};
-use crate::system::{Problem, Share, System};
+use crate::output::{OutputDir, plot};
+use crate::system::{Problem, SubdomainSize, System};
+use crate::text::number;
 
 /// Memory of a rank without any unknowns, alone and among others, and for n log2 n with n the unknowns it owns (the
 /// factors of a plane mesh grow so), bytes: fitted to the peaks of resident memory of short runs with 3 924, 9 882,
@@ -30,17 +33,17 @@ pub(super) fn describe(case: &Case, comm: &SimpleCommunicator) -> Result<(), Run
     if comm.rank() == 0 {
         let local = system.local();
         let (die, punch) = recorder::right_halves(local.problem());
-        plot::model(folder.file("model.svg"), case, &die, &punch)?;
+        plot::model(folder.model_figure(), case, &die, &punch)?;
     }
-    let shares = system.shares();
+    let shares = SubdomainSize::of_all(&system);
     let mut text = String::from("dry run: the model, nothing is solved\n\n");
-    for (name, value) in facts(case, &system, &shares, &super::landmarks(case)?) {
+    for (name, value) in facts(case, &system, &shares, &landmarks(case)?) {
         text.push_str(&format!("{name:<12}  {value}\n"));
     }
     text.push_str(&table(&shares));
     text.push_str(&format!(
         "\nsketch        {}\n",
-        folder.file("model.svg").display()
+        folder.model_figure().display()
     ));
     Monitor::new(comm.rank(), stdout(), case.loading.motion()).show(&text);
     Ok(())
@@ -49,7 +52,7 @@ pub(super) fn describe(case: &Case, comm: &SimpleCommunicator) -> Result<(), Run
 fn facts(
     case: &Case,
     system: &System,
-    shares: &[Share],
+    shares: &[SubdomainSize],
     landmarks: &[f64],
 ) -> Vec<(&'static str, String)> {
     let Case {
@@ -63,7 +66,7 @@ fn facts(
         ..
     } = case;
     let motion = loading.motion();
-    let sum = |part: fn(&Share) -> usize| shares.iter().map(part).sum::<usize>();
+    let sum = |part: fn(&SubdomainSize) -> usize| shares.iter().map(part).sum::<usize>();
     let yields = |p: f64| format!("{:.1}", material.hardening.yield_stress(p).0);
     let edge = sheet.half_length() / discretisation.nx as f64;
     let mut facts = vec![
@@ -212,12 +215,12 @@ fn facts(
     facts
 }
 
-fn memory(shares: &[Share]) -> String {
+fn memory(shares: &[SubdomainSize]) -> String {
     let (least, ranks) = match shares.len() {
         1 => (MEMORY_ALONE, "1 rank".to_owned()),
         ranks => (MEMORY_AMONG_OTHERS, format!("{ranks} ranks together")),
     };
-    let of = |share: &Share| {
+    let of = |share: &SubdomainSize| {
         let unknowns = share.unknowns.max(2) as f64;
         (least + MEMORY_PER_UNKNOWN * unknowns * unknowns.log2()) / 1e6
     };
@@ -234,7 +237,7 @@ fn least_steps(landmarks: &[f64], longest: f64) -> usize {
         .sum()
 }
 
-fn table(shares: &[Share]) -> String {
+fn table(shares: &[SubdomainSize]) -> String {
     let mut text = format!(
         "\n{:>6}{:>10}{:>8}{:>14}{:>16}{:>10}\n",
         "rank", "elements", "nodes", "shared nodes", "contact points", "unknowns"

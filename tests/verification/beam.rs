@@ -16,6 +16,7 @@ pub const CANTILEVER: Case = Case {
 so the tip's deflection is exact, shear included. Beside it the Euler-Bernoulli value with E/(1-ν²), which neglects shear: \
 its difference from the exact one, 0.9 %, is not ours. Tolerance: the discretisation with one element (2e-3) and four (1e-4) through the depth.",
     quick: true,
+    two_ranks: true,
     run: cantilever,
 };
 
@@ -93,6 +94,7 @@ pub const ELASTICA: Case = Case {
     text: "Cantilever of 100 x 1 mm, elastic, with a dead end load P up to P L²/(E' I) = 10; 50 x 1 elements. The reference is the inextensible elastica, solved by shooting \
 (it meets the published 0.3017, 0.4935 and 0.8106 L). Neglected there: stretch and shear, of the order (h/L)² times the load, up to 1e-3. Tolerance: that.",
     quick: true,
+    two_ranks: true,
     run: elastica,
 };
 

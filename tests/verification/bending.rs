@@ -21,6 +21,7 @@ pub const STRIP: Case = Case {
 The reference is M(κ) = ∫ σ_x(κ y) y dy with σ_x from the Prandtl-Reuss rates in plane strain (no strain in z, no stress in y), and κ - M/(E' I) after the release. \
 Tolerance: the kinks of the stress over the thickness, and 80 steps of first order.",
     quick: true,
+    two_ranks: true,
     run: strip,
 };
 

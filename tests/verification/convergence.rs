@@ -21,6 +21,7 @@ pub const MANUFACTURED: Case = Case {
 smoothly distorted meshes of 8 x 8, 16 x 16 and 32 x 32 elements. Quadratic elements must give order 3 in the L2 norm of the displacement and order 2 in the energy norm. \
 Tolerance on the orders: the last halving is not yet the limit.",
     quick: true,
+    two_ranks: true,
     run: manufactured,
 };
 

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use crate::row::{Answer, Case, Result, Row};
+use crate::row::{Answer, Case, ROUNDING, Result, Row};
 
 const HEAD: &str = "\
 # Verification
@@ -12,7 +12,9 @@ const HEAD: &str = "\
 
 What the program computes beside closed solutions and independent integrations: first the material without a mesh, then
 elements, contact, and motion in time. `scripts/verify.sh` runs all cases and writes this page; the cases marked *quick* run in
-`cargo test --release`. Units are mm, N, MPa, g and ms. The cases are in [tests/verification](../tests/verification).
+`cargo test --release`. The cases marked *also on two ranks* are solved a second time by two ranks, where every row must hold, too,
+and every value be that of one rank, to 1e-7 of its size (values that should be zero: to 1e-9). Units are mm, N, MPa, g and ms.
+The cases are in [tests/verification](../tests/verification).
 
 An error is relative to the reference unless it is marked with its absolute unit by *abs*. A tolerance says what the method
 should reach (rounding, the order of the scheme, or the terms the reference neglects), and the text of a case says which.
@@ -64,7 +66,16 @@ pub fn write(answers: &[(&Case, &Answer)]) -> Result<()> {
 
 fn section(page: &mut String, case: &Case, answer: &Answer) -> Result<()> {
     let quick = if case.quick { ", quick" } else { "" };
-    writeln!(page, "\n## {}\n\n`{}`{quick}\n", case.title, case.name)?;
+    let ranks = if case.two_ranks {
+        ", also on two ranks"
+    } else {
+        ""
+    };
+    writeln!(
+        page,
+        "\n## {}\n\n`{}`{quick}{ranks}\n",
+        case.title, case.name
+    )?;
     writeln!(page, "{}\n", case.text)?;
     for (name, caption, _) in &answer.pictures {
         writeln!(page, "![{caption}](images/{name}.svg)\n")?;
@@ -92,9 +103,6 @@ fn table_line(row: &Row) -> String {
         row.source
     )
 }
-
-/// Below this a number is rounding, which differs from machine to machine.
-const ROUNDING: f64 = 1e-9;
 
 fn error(value: f64) -> String {
     if value < ROUNDING {

@@ -27,6 +27,7 @@ pub const EYTELWEIN: Case = Case {
 The rope formula is T₂/T₁ = exp(μ θ). A strip with its middle at R + h/2 carries the friction on its face with a transverse force; equilibrium at constant curvature gives \
 the exponent k = μ (1-δ)/(1 + δ μ k) with δ = h/(2R + h), 0.5 % below μ. Tolerance: h/R of the exponent for the rope formula, which neglects the thickness; 0.05 % for the second, which leaves out the ends of the contact.",
     quick: true,
+    two_ranks: true,
     run: eytelwein,
 };
 

@@ -18,6 +18,7 @@ pub const PRESSURE: Case = Case {
 The weights of the contact points integrate quadratic functions exactly, so every point must carry exactly p, and give by compliance · p; \
 the block is strained uniformly, E/(1-ν²) ln λ = -p λ. Tolerance: the convergence of Newton's method.",
     quick: true,
+    two_ranks: true,
     run: pressed,
 };
 

@@ -2,7 +2,8 @@
 //!
 //! Without arguments the quick cases run, as a test. `-- --document` runs all and writes
 //! docs/verification.md and its pictures; a word runs the cases whose names hold it. One process, one
-//! rank: MPI and PETSc start once.
+//! rank: MPI and PETSc start once. Before, the file starts itself by mpirun with the cases that also run on two
+//! ranks; what these find is compared with what one rank finds.
 
 mod beam;
 mod bending;
@@ -16,6 +17,7 @@ mod impact;
 mod material;
 mod motion;
 mod patch;
+mod ranks;
 mod row;
 mod shear;
 mod sliding;
@@ -76,27 +78,47 @@ const OPTIONS: &[(&str, &str)] = &[
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let document = arguments.iter().any(|word| word == "--document");
+    let worker = arguments.iter().any(|word| word == ranks::WORKER);
     let words: Vec<&String> = arguments.iter().filter(|w| !w.starts_with('-')).collect();
+    let chosen: Vec<&Case> = CASES
+        .iter()
+        .filter(|case| {
+            let named = words.iter().any(|word| case.name.contains(word.as_str()));
+            named || (words.is_empty() && (document || case.quick))
+        })
+        .collect();
+    if chosen.is_empty() {
+        eprintln!("verification: no case is called so");
+        return ExitCode::FAILURE;
+    }
+    // Before MPI starts here: mpirun below a process of MPI would take itself for one of its ranks.
+    let by_two = if worker {
+        Ok(ranks::Found::default())
+    } else {
+        ranks::by_two(&chosen)
+    };
     let Some((universe, _)) = mpi::initialize_with_threading(mpi::Threading::Funneled) else {
         eprintln!("verification: MPI cannot be started");
         return ExitCode::FAILURE;
     };
     let world = universe.world();
-    if world.size() > 1 {
-        eprintln!("verification: the cases run on one rank");
+    if world.size() > 1 && !worker {
+        eprintln!("verification: it starts its ranks itself, without mpirun");
         world.abort(1);
     }
-    let chosen = CASES.iter().filter(|case| {
-        let named = words.iter().any(|word| case.name.contains(word.as_str()));
-        named || (words.is_empty() && (document || case.quick))
-    });
     let passed = {
         let _session = petsc::Session::new(&["verification".to_owned()]).expect("PETSc starts");
         for (name, value) in OPTIONS {
             petsc::options::set_default(name, value).expect("an option can be set");
         }
-        let answers: Vec<_> = chosen.map(|case| (case, run(case, &world))).collect();
-        let passed = answers.iter().all(|(_, answer)| holds(answer.as_ref()));
+        let answers: Vec<_> = chosen
+            .iter()
+            .map(|case| (*case, run(case, &world)))
+            .collect();
+        let mut passed = answers.iter().all(|(_, answer)| holds(answer.as_ref()));
+        if !worker {
+            passed &= ranks::agree(by_two, &answers);
+        }
         if document && words.is_empty() && passed {
             let answers: Vec<_> = answers
                 .iter()
@@ -115,10 +137,10 @@ fn main() -> ExitCode {
 }
 
 fn holds(answer: Option<&Answer>) -> bool {
-    answer.is_some_and(|answer| answer.rows.iter().all(row::Row::holds))
+    answer.is_some_and(|answer| !answer.rows.is_empty() && answer.rows.iter().all(row::Row::holds))
 }
 
-/// Runs a case and prints its rows, separated by semicolons.
+/// Runs a case and prints its rows, separated by semicolons; of several ranks the first one prints.
 fn run(case: &Case, world: &SimpleCommunicator) -> Option<Answer> {
     let clock = Instant::now();
     let outcome = catch_unwind(AssertUnwindSafe(|| (case.run)(world)));
@@ -130,6 +152,13 @@ fn run(case: &Case, world: &SimpleCommunicator) -> Option<Answer> {
         }
         Err(_) => None,
     };
+    if world.size() > 1 && answer.is_none() {
+        // The other rank may wait for this one.
+        world.abort(1);
+    }
+    if world.rank() > 0 {
+        return answer;
+    }
     for row in answer.iter().flat_map(|answer| &answer.rows) {
         println!("{}", row.line(case.name));
     }
@@ -138,7 +167,10 @@ fn run(case: &Case, world: &SimpleCommunicator) -> Option<Answer> {
     } else {
         "FAILED"
     };
-    let seconds = clock.elapsed().as_secs_f64();
-    println!("test {} ... {verdict} ({seconds:.1} s)", case.name);
+    let (seconds, ranks) = (clock.elapsed().as_secs_f64(), world.size());
+    println!(
+        "test {} on {ranks} rank(s) ... {verdict} ({seconds:.1} s)",
+        case.name
+    );
     answer
 }

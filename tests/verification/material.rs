@@ -72,6 +72,7 @@ pub const UNIAXIAL: Case = Case {
 stresses vanish. The path is proportional, so the return map is exact and the Kirchhoff stress must be the table's. \
 (The table is read as Kirchhoff stress; the true stress is smaller by the volume ratio, 0.1 to 0.3 % here.) Tolerance: rounding.",
     quick: true,
+    two_ranks: false,
     run: uniaxial,
 };
 
@@ -104,6 +105,7 @@ stress turns in the deviatoric plane and the return map (backward Euler) is of f
 Prandtl-Reuss rates in logarithmic strains by a Runge-Kutta method; principal axes do not turn, so small strain equations hold \
 for any strain. 2000 and 4000 steps to a strain of 0.5, extrapolated to the limit of small steps. Tolerance: what is left of second order, and the kinks of the table.",
     quick: true,
+    two_ranks: false,
     run: plane_strain,
 };
 
@@ -159,6 +161,7 @@ pub const CYCLIC: Case = Case {
 at |stress| = yield stress(p), where p follows from the strain of the branch; a piecewise linear equation solved by bisection. \
 The path is proportional, so the return map must be exact, in any number of steps (7 per branch here). Tolerance: rounding.",
     quick: true,
+    two_ranks: false,
     run: cyclic,
 };
 

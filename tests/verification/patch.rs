@@ -42,6 +42,7 @@ pub const DISPLACEMENT: Case = Case {
 that of the material point everywhere: elastic at small strain, and with plastic strains of 0.18 and a rotation in ten steps. \
 Tolerance: the convergence of Newton's method.",
     quick: true,
+    two_ranks: true,
     run: displacement,
 };
 
@@ -91,10 +92,10 @@ fn displacement(world: &SimpleCommunicator) -> Result<Answer> {
                 1e-10,
                 SOURCE,
             ));
-            let samples = statics.samples()?;
-            let errors = samples
+            let stresses = statics.stresses()?;
+            let errors = stresses
                 .iter()
-                .flat_map(|s| (0..4).map(move |i| s.stress[i] - stress[i]));
+                .flat_map(|s| (0..4).map(move |i| s[i] - stress[i]));
             rows.push(Row::absolute(
                 format!("largest error of a stress over the largest stress; {label}"),
                 largest(errors) / largest(stress),
@@ -113,6 +114,7 @@ pub const TRACTION: Case = Case {
     text: "The same elements, elastic, held as lightly as possible and pulled by a dead traction P on the right side, to a logarithmic \
 strain of 0.1. Kirchhoff stress E/(1-ν²) ln λ and P = stress/λ give the stretches λ in x and λ^(-ν/(1-ν)) in y. Tolerance: the convergence of Newton's method.",
     quick: true,
+    two_ranks: true,
     run: pulled,
 };
 

@@ -17,7 +17,9 @@ pub struct Case {
     pub text: &'static str,
     /// Whether it runs with the other tests.
     pub quick: bool,
-    /// Runs it on one rank.
+    /// Whether it also runs on two ranks.
+    pub two_ranks: bool,
+    /// Runs it.
     pub run: fn(&SimpleCommunicator) -> Result<Answer>,
 }
 
@@ -38,6 +40,12 @@ impl From<Vec<Row>> for Answer {
         }
     }
 }
+
+/// Share of a value by which it may differ between numbers of ranks. Largest found: 1e-9, in bending; what Newton's
+/// method leaves depends on the machine.
+const SAME: f64 = 1e-7;
+/// Below this a value that should be zero is rounding, which differs from machine to machine.
+pub const ROUNDING: f64 = 1e-9;
 
 /// A computed value beside its reference.
 pub struct Row {
@@ -97,6 +105,18 @@ impl Row {
     /// Whether the error is within the tolerance; a NaN is not.
     pub fn holds(&self) -> bool {
         self.error() <= self.tolerance
+    }
+
+    /// Whether a value found with another number of ranks is the same: to [`SAME`] of its size. An error in absolute
+    /// terms has no size of its own; it may differ by rounding, or by 1e-5 of its tolerance.
+    pub fn is_also(&self, other: f64) -> bool {
+        let size = self.computed.abs().max(self.reference.abs());
+        let least = if self.relative {
+            0.0
+        } else {
+            ROUNDING.min(self.tolerance).max(1e-5 * self.tolerance)
+        };
+        (self.computed - other).abs() <= (SAME * size).max(least)
     }
 
     /// The row for a machine.

@@ -14,6 +14,7 @@ pub const ELASTIC: Case = Case {
 logarithmic strains are ±a, and τ_xy = 2 G a / cosh a, τ_xx = -τ_yy = 2 G a tanh a. The shear stress has its maximum at \
 a tanh a = 1, γ = 3.018. Tolerance: rounding.",
     quick: true,
+    two_ranks: false,
     run: elastic,
 };
 
@@ -56,6 +57,7 @@ pub const PLASTIC: Case = Case {
 theory, ḃ = l b + b lᵀ - 3 ṗ (s/q) b for the elastic left Cauchy-Green tensor b, s the deviator of 2 G · ½ ln b, with ṗ \
 from consistency, by a Runge-Kutta method with 200000 steps; principal axes turn all the way. Tolerance: what is left of second order, and the kinks of the table.",
     quick: true,
+    two_ranks: false,
     run: plastic,
 };
 

@@ -50,6 +50,7 @@ pub const RIGID: Case = Case {
     text: "A block under a uniform pressure p = 100 MPa, all its nodes moved along the tool: 0 → 0.01 → -0.01 → 0.01 mm in steps of 0.001 mm. The friction traction is that of a spring \
 of the friction compliance (1e-4 mm/MPa) with a slider at μ p = 30 MPa in series: stick up to 0.003 mm, 0.006 mm after a reversal. Tolerance: the convergence of Newton's method.",
     quick: true,
+    two_ranks: true,
     run: cycle,
 };
 
@@ -129,6 +130,7 @@ pub const DEFORMABLE: Case = Case {
 needs the force T = μ p (s + λ) and the push u = μ p (ε + λ s/(E' h) + s²/(2 E' h)). The bar theory neglects the bar's shear (h/(3G) beside ε, 1.3 %) and its tilting moment (μ h/2 beside s, 0.25 %); tolerance 1 %. \
 Then all of it slips and the push must be μ times the load, in both directions; tolerance: the convergence of Newton's method.",
     quick: true,
+    two_ranks: true,
     run: bar,
 };
 

@@ -1,5 +1,6 @@
 //! Problems without the benchmark's tools, solved statically.
 
+use std::collections::HashMap;
 use std::f64::consts::PI;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -10,9 +11,10 @@ use petsc::Vector;
 use ssnp155::contact::{ContactLocation, ContactRule};
 use ssnp155::element::Quadrature;
 use ssnp155::mesh::SheetMesh;
+use ssnp155::ranks::gather_lists;
 use ssnp155::run::StaticPath;
 use ssnp155::system::{
-    ContactPointSample, Factor, Measures, NodalValue, NodeSample, Problem, System, Tool,
+    ContactPointSample, Factor, History, Measures, NodalValue, Problem, System, Tool,
 };
 use ssnp155::tool::{Motion, Piece, Profile};
 
@@ -164,7 +166,24 @@ pub enum Touching {
     Innermost,
 }
 
-/// A static solution, time by time.
+/// What is asked of a contact point.
+#[derive(Clone, Copy)]
+pub struct Touch {
+    /// Where it lies on the undeformed body, mm.
+    pub reference: [f64; 2],
+    /// Contact pressure, MPa.
+    pub pressure: f64,
+    /// Distance to the tool, mm.
+    pub gap: f64,
+    /// Friction traction, MPa.
+    pub friction: f64,
+    /// Whether it carries a force.
+    pub active: bool,
+    /// Whether friction is at its limit.
+    pub slips: bool,
+}
+
+/// A static solution, time by time, on one rank or several: everything asked of it is gathered, the same on every rank.
 pub struct Statics {
     pub system: Rc<System>,
     pub path: StaticPath,
@@ -183,7 +202,7 @@ impl Statics {
         let system = Rc::new(System::new(problem, world.duplicate())?);
         let start = start_unknowns(&system, touching)?;
         Ok(Self {
-            path: StaticPath::new(Rc::clone(&system), start)?,
+            path: StaticPath::new(Rc::clone(&system), History::virgin(system.local()), start)?,
             system,
             time: 0.0,
         })
@@ -200,9 +219,11 @@ impl Statics {
         }
     }
 
-    /// Unknowns: displacements node by node, then multipliers and gaps.
+    /// Displacements node by node, in the order of the mesh.
     pub fn values(&self) -> Result<Vec<f64>> {
-        Ok(self.system.local_values(self.path.unknowns())?)
+        let values = self.system.local_values(self.path.unknowns())?;
+        let pairs = values.chunks_exact(2).map(|pair| [pair[0], pair[1]]);
+        Ok(self.gathered(pairs, |_, other| other).concat())
     }
 
     /// Displacement of a node.
@@ -213,34 +234,99 @@ impl Statics {
 
     /// Internal force at every node, N per mm of width.
     pub fn internal_forces(&self) -> Result<Vec<[f64; 2]>> {
-        let values = self.values()?;
+        let values = self.system.local_values(self.path.unknowns())?;
         let mut forces = vec![0.0; values.len()];
         let local = self.system.local();
-        local.add_internal_forces(&values, &mut forces)?;
+        local.add_internal_forces(&self.path.history(), &values, &mut forces)?;
         let young = local.problem().young_modulus;
-        let count = local.problem().mesh.nodes.len();
-        Ok((0..count)
-            .map(|n| [young * forces[2 * n], young * forces[2 * n + 1]])
-            .collect())
+        let pairs = forces.chunks_exact(2).map(|f| [young * f[0], young * f[1]]);
+        // A node between two ranks has a share on each.
+        Ok(self.gathered(pairs, |sum, share| [sum[0] + share[0], sum[1] + share[1]]))
     }
 
-    /// Stresses and more at the nodes.
-    pub fn samples(&self) -> Result<Vec<NodeSample>> {
-        let values = self.values()?;
-        let sampler = self.system.local().field_sampler();
-        Ok(self.system.node_samples(&sampler, self.time, &values)?)
+    /// Cauchy stress xx, yy, zz, xy at every node, MPa.
+    pub fn stresses(&self) -> Result<Vec<[f64; 4]>> {
+        let values = self.system.local_values(self.path.unknowns())?;
+        let history = self.path.history();
+        let samples = self.system.node_samples(&history, self.time, &values)?;
+        Ok(self.gathered(samples.iter().map(|s| s.stress), |_, other| other))
     }
 
-    /// The contact points.
-    pub fn contacts(&self) -> Result<Vec<ContactPointSample>> {
-        let values = self.values()?;
-        Ok(self.system.local().contact_points(self.time, &values))
+    /// What the ranks know of their nodes, node by node in the order of the mesh; where several know of a node, `join`ed
+    /// from zero on.
+    fn gathered<const N: usize>(
+        &self,
+        mine: impl Iterator<Item = [f64; N]>,
+        join: impl Fn([f64; N], [f64; N]) -> [f64; N],
+    ) -> Vec<[f64; N]> {
+        let local = self.system.local();
+        let places = local.node_coordinates().iter();
+        let packed: Vec<f64> = places
+            .zip(mine)
+            .flat_map(|(place, value)| place.iter().copied().chain(value).collect::<Vec<_>>())
+            .collect();
+        let mesh = &local.problem().mesh;
+        // The ranks' coordinates are copies of the mesh's, so they agree to the last bit.
+        let bits = |x: &[f64]| [x[0].to_bits(), x[1].to_bits()];
+        let numbers: HashMap<[u64; 2], usize> =
+            mesh.nodes.iter().map(|x| bits(x)).zip(0..).collect();
+        let mut values = vec![[0.0; N]; mesh.nodes.len()];
+        for entry in gather_lists(self.system.comm(), &packed).chunks_exact(2 + N) {
+            let value = &mut values[numbers[&bits(entry)]];
+            *value = join(*value, std::array::from_fn(|k| entry[2 + k]));
+        }
+        values
+    }
+
+    /// The contact points, by their place along the body.
+    pub fn contacts(&self) -> Result<Vec<Touch>> {
+        let values = self.system.local_values(self.path.unknowns())?;
+        let history = self.path.history();
+        let local = self.system.local();
+        let points = local.contact_points(&history, self.time, &values);
+        let packed: Vec<f64> = points.iter().flat_map(pack).collect();
+        let all = gather_lists(self.system.comm(), &packed);
+        let mut all: Vec<Touch> = all.chunks_exact(PACKED).map(unpack).collect();
+        all.sort_by(|a, b| {
+            let [along, up] = [0, 1].map(|k| a.reference[k].total_cmp(&b.reference[k]));
+            along.then(up)
+        });
+        Ok(all)
     }
 
     pub fn measures(&self) -> Result<Measures> {
-        Ok(self
-            .system
-            .measures(self.time, self.path.unknowns(), None)?)
+        let (history, unknowns) = (self.path.history(), self.path.unknowns());
+        Ok(self.system.measures(&history, self.time, unknowns, None)?)
+    }
+}
+
+/// Numbers a contact point is packed into for a message.
+const PACKED: usize = 7;
+
+fn pack(point: &ContactPointSample) -> [f64; PACKED] {
+    let [x, y] = point.reference;
+    let [active, slips] =
+        [point.state.is_closed(), point.state.slips()].map(|yes| f64::from(u8::from(yes)));
+    [
+        x,
+        y,
+        point.pressure,
+        point.gap,
+        point.friction,
+        active,
+        slips,
+    ]
+}
+
+fn unpack(numbers: &[f64]) -> Touch {
+    let [x, y, pressure, gap, friction, active, slips] = std::array::from_fn(|k| numbers[k]);
+    Touch {
+        reference: [x, y],
+        pressure,
+        gap,
+        friction,
+        active: active == 1.0,
+        slips: slips == 1.0,
     }
 }
 
@@ -251,13 +337,16 @@ pub fn start_unknowns(system: &System, touching: Touching) -> Result<Vector> {
     let mut unknowns = system.vector()?;
     unknowns.set_all(0.0)?;
     let local = system.local();
-    let points = local.contact_points(0.0, &vec![0.0; local.unknown_count()]);
+    let still = vec![0.0; local.unknown_count()];
+    let points = local.contact_points(&History::virgin(local), 0.0, &still);
     let closed = |point: &ContactPointSample| point.gap < 1e-6;
-    let innermost = points
+    let of_mine = points
         .iter()
         .filter(|point| closed(point))
         .map(|point| point.reference[0])
         .fold(f64::INFINITY, f64::min);
+    let of_all = gather_lists(system.comm(), &[of_mine]);
+    let innermost = of_all.into_iter().fold(f64::INFINITY, f64::min);
     let first = system.owned_displacements();
     let mut write = unknowns.write()?;
     for (k, point) in points.iter().enumerate() {
@@ -269,6 +358,5 @@ pub fn start_unknowns(system: &System, touching: Touching) -> Result<Vector> {
         write[first + 2 * k + 1] = if closed(point) { 0.0 } else { point.gap };
     }
     drop(write);
-    drop(local);
     Ok(unknowns)
 }

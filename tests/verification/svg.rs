@@ -1,6 +1,8 @@
-//! A plain picture: a curve and points over a frame with axes.
+//! A plain picture: a curve and points over a frame with axes; it is read back before it is handed out.
 
 use std::fmt::Write;
+
+use crate::row::Result;
 
 /// What is drawn.
 pub struct Chart<'a> {
@@ -23,7 +25,16 @@ const FRAME: [f64; 4] = [70.0, 50.0, 700.0, 365.0];
 
 impl Chart<'_> {
     /// The picture as SVG.
-    pub fn svg(&self) -> String {
+    ///
+    /// # Errors
+    /// If what was drawn, measured by its own ticks, is not what was to be drawn.
+    pub fn svg(&self) -> Result<String> {
+        let svg = self.drawn();
+        self.check(&svg)?;
+        Ok(svg)
+    }
+
+    fn drawn(&self) -> String {
         let [left, top, right, bottom] = FRAME;
         let px = |x: f64| left + (right - left) * x / self.end[0];
         let py = |y: f64| bottom - (bottom - top) * y / self.end[1];
@@ -97,6 +108,91 @@ impl Chart<'_> {
             h = SIZE[1]
         )
     }
+
+    /// Reads the picture as somebody with a ruler would: a place counts by the ticks beside it.
+    fn check(&self, svg: &str) -> Result<()> {
+        resvg::usvg::Tree::from_str(svg, &resvg::usvg::Options::default())?;
+        for text in [
+            self.title,
+            self.x_label,
+            self.y_label,
+            self.curve.0,
+            self.dots.0,
+        ] {
+            if !svg.contains(&format!(">{text}</text>")) {
+                return Err(format!("the picture lacks the text '{text}'").into());
+            }
+        }
+        let [along, up] = [ruler(svg, "x", "middle")?, ruler(svg, "y", "end")?];
+        // A tenth of the picture's unit is what its numbers are rounded to; labels stand a little below their ticks.
+        let baseline = 4.0;
+        let read = |x: f64, y: f64| [along.value(x), up.value(y + baseline)];
+        let slack = [0.1 * along.per_unit.abs(), 0.1 * up.per_unit.abs()];
+        let same = |name: &str, found: Vec<[f64; 2]>, wanted: &[[f64; 2]]| {
+            let close =
+                |a: &[f64; 2], b: &[f64; 2]| (0..2).all(|k| (a[k] - b[k]).abs() <= slack[k]);
+            if found.len() == wanted.len() && found.iter().zip(wanted).all(|(a, b)| close(a, b)) {
+                Ok(())
+            } else {
+                Err(format!("{name} is not drawn where its numbers are"))
+            }
+        };
+        let dots = svg.matches("<circle").count();
+        let circles = svg.split("<circle").skip(1).take(dots - 1);
+        let places = circles.map(|tag| Ok(read(attribute(tag, "cx")?, attribute(tag, "cy")?)));
+        same(self.dots.0, places.collect::<Result<_>>()?, &self.dots.1)?;
+        let line = svg.split(r#"" fill="none""#).next().unwrap_or_default();
+        let line = line.rsplit('"').next().unwrap_or_default();
+        let places = line.split(['M', 'L']).skip(1).map(|pair| {
+            let (x, y) = pair.split_once(' ').ok_or("a point without y")?;
+            Ok(read(x.parse()?, y.parse()?))
+        });
+        same(self.curve.0, places.collect::<Result<_>>()?, &self.curve.1)?;
+        Ok(())
+    }
+}
+
+/// An axis as its labelled ticks say: value and place of the first tick, and value per unit of the picture.
+struct Ruler {
+    first: [f64; 2],
+    per_unit: f64,
+}
+
+impl Ruler {
+    fn value(&self, place: f64) -> f64 {
+        self.first[0] + (place - self.first[1]) * self.per_unit
+    }
+}
+
+/// The axis whose labels are numbers anchored at `anchor`.
+fn ruler(svg: &str, axis: &str, anchor: &str) -> Result<Ruler> {
+    let mut ticks: Vec<[f64; 2]> = Vec::new();
+    for tag in svg.split("<text").skip(1) {
+        let label = tag.split(['>', '<']).nth(1).unwrap_or_default();
+        if let (true, Ok(value)) = (
+            tag.contains(&format!(r#"text-anchor="{anchor}""#)),
+            label.parse(),
+        ) {
+            ticks.push([value, attribute(tag, axis)?]);
+        }
+    }
+    let [first, .., last] = ticks[..] else {
+        return Err(format!("fewer than two ticks along {axis}").into());
+    };
+    let per_unit = (last[0] - first[0]) / (last[1] - first[1]);
+    let ruler = Ruler { first, per_unit };
+    let off = |tick: &[f64; 2]| (ruler.value(tick[1]) - tick[0]).abs() > 0.1 * per_unit.abs();
+    if ticks.iter().any(off) {
+        return Err(format!("the ticks along {axis} are not even").into());
+    }
+    Ok(ruler)
+}
+
+fn attribute(tag: &str, name: &str) -> Result<f64> {
+    let start = format!(r#" {name}=""#);
+    let value = tag.split(start.as_str()).nth(1);
+    let value = value.and_then(|rest| rest.split('"').next());
+    Ok(value.ok_or("an attribute is missing")?.parse()?)
 }
 
 fn label(value: f64) -> String {

@@ -8,13 +8,14 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::{Communicator, Root};
+use mpi::traits::Communicator;
 
-use super::RunError;
+use super::error::{RestartError, RunError};
 use crate::case::{Case, Difference, Restart};
 use crate::material::Hardening;
 use crate::output::{Arrays, OutputError, agree, checkpoint};
-use crate::system::System;
+use crate::ranks::broadcast_bytes;
+use crate::system::{History, System};
 
 pub(super) use state::RunState;
 
@@ -46,11 +47,13 @@ impl Resumed {
         self.state.time
     }
 
-    /// Gives the system the history of its material and contact points.
-    pub(super) fn restore_history(&self, system: &System) -> Result<(), OutputError> {
-        let restored = system.restore(&self.state.snapshot);
-        let path = self.path.clone();
-        restored.map_err(|reason| OutputError::Checkpoint { path, reason })
+    /// The history of the system's material and contact points.
+    pub(super) fn history(&self, system: &System) -> Result<History, OutputError> {
+        let restored = self.state.snapshot.restore(system);
+        restored.map_err(|error| OutputError::Checkpoint {
+            path: self.path.clone(),
+            reason: error.to_string(),
+        })
     }
 
     /// For each of this rank's nodes and of its contact points, the row that has it in the field files so far.
@@ -74,30 +77,6 @@ impl Resumed {
             mine.ok_or(OutputError::Checkpoint { path, reason }),
         )
     }
-}
-
-/// Why there is nothing to go on from.
-#[derive(Debug, thiserror::Error)]
-pub enum RestartError {
-    /// No checkpoint in the output folder.
-    #[error(
-        "-restart: there is no checkpoint in {}; run without -restart, or give the path of a checkpoint", folder.display()
-    )]
-    None {
-        /// The folder.
-        folder: PathBuf,
-    },
-    /// The checkpoint belongs to another problem.
-    #[error(
-        "-restart: the checkpoint {} belongs to another problem ({differences}); give the same options, or run without \
-         -restart", path.display()
-    )]
-    OtherProblem {
-        /// The checkpoint.
-        path: PathBuf,
-        /// The options that differ.
-        differences: String,
-    },
 }
 
 /// The checkpoint the case asks for, if it asks for one. Rank 0 chooses and checks, every rank reads. Collective.
@@ -161,13 +140,9 @@ fn first_whole(candidates: &[PathBuf]) -> Result<Choice, OutputError> {
     first_error.map_or(Ok(choice), Err)
 }
 
+/// Rank 0's text on every rank. Collective.
 fn broadcast(comm: &SimpleCommunicator, text: &mut String) {
-    let root = comm.process_at_rank(0);
-    let mut length = text.len() as u64;
-    root.broadcast_into(&mut length);
-    let mut bytes = std::mem::take(text).into_bytes();
-    bytes.resize(length as usize, 0);
-    root.broadcast_into(&mut bytes[..]);
+    let bytes = broadcast_bytes(comm, 0, std::mem::take(text).into_bytes());
     *text = String::from_utf8_lossy(&bytes).into_owned();
 }
 

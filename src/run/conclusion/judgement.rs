@@ -1,16 +1,16 @@
-//! What a run is judged by: the reference values of its case, and the certificate of every step.
+//! What a run is judged by: the reference and regression values of its case, and the certificate of every step.
 
-use crate::case::{self, Case, Instant, ReferenceValue};
+use crate::case::{self, Case, Instant, Origin, ReferenceValue};
 use crate::output::{StepRecord, Tolerance, VerdictRow, VerdictTable};
-use crate::run::RunError;
+use crate::run::error::RunError;
 use crate::run::ledger::LEAST_FORCE;
 
 /// Largest share by which punch force may differ from die force and inertia.
 pub(super) const BALANCE_LIMIT: f64 = 1e-6;
 /// Largest excess of friction as a share of the largest friction possible.
 pub(super) const CONE_LIMIT: f64 = 1e-6;
-/// Largest pull of a contact point as a share of the punch force: what the residual's tolerance leaves.
-pub(super) const PULL_LIMIT: f64 = 1e-6;
+/// Largest tensile force of a contact point as a share of the punch force: what the residual's tolerance leaves.
+pub(super) const TENSION_LIMIT: f64 = 1e-6;
 
 /// The certificate's limits for every run that got anywhere, and the reference values where the
 /// case is the one they belong to.
@@ -21,8 +21,9 @@ pub(super) fn judge(
 ) -> Result<VerdictTable, RunError> {
     let mut table = VerdictTable::default();
     if finished {
-        for value in case.reference_values()? {
-            table.rows.push(VerdictRow::new(
+        let values = case.reference_values()?.into_iter();
+        for value in values.chain(case.regression_values()?) {
+            let row = VerdictRow::new(
                 format!("{}, {}", value.quantity, when(&value)),
                 computed(case, records, &value),
                 value.value,
@@ -32,7 +33,11 @@ pub(super) fn judge(
                 },
                 value.unit,
                 value.source,
-            ));
+            );
+            table.rows.push(match value.origin {
+                Origin::Independent => row,
+                Origin::Own => row.regression(),
+            });
         }
     }
     if records.is_empty() {
@@ -64,9 +69,9 @@ pub(super) fn judge(
         "mm",
     );
     limit(
-        "strongest pull of a contact point, of the punch force",
+        "largest tensile force of a contact point, of the punch force",
         worst(|r| -r.min_contact_force_N / r.force_N.max(LEAST_FORCE)),
-        PULL_LIMIT,
+        TENSION_LIMIT,
         "1",
     );
     let imbalance = worst(|r| r.balance_error.abs());
@@ -92,8 +97,8 @@ fn when(value: &ReferenceValue) -> String {
     match value.when {
         Instant::Travel(depth) => format!("d = {depth} mm"),
         Instant::FullStroke => "full stroke".to_owned(),
-        Instant::LargestWhileLoading => "largest".to_owned(),
-        Instant::EndOfUnloading => "end".to_owned(),
+        Instant::LargestWhileLoading => "largest while loading".to_owned(),
+        Instant::EndOfUnloading => "end of unloading".to_owned(),
         Instant::Withdrawn => "tools withdrawn".to_owned(),
     }
 }

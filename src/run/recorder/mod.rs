@@ -10,13 +10,14 @@ use std::path::{Path, PathBuf};
 use mpi::traits::Communicator;
 
 use super::checkpoint::{Resumed, RunState, STATE};
-use crate::case::Case;
+use crate::case::{Case, ReferenceForce};
 use crate::output::folder::{CONTACT, FIELDS, HISTORY, TOOLS};
+use crate::output::plot::{self, DeformedElement, gather_elements};
 use crate::output::{
-    Arrays, ContactFile, ContactSample, FieldSample, History, Monitor, OutputDir, OutputError,
-    SheetFile, SheetPart, StepRecord, ToolsFile, agree, checkpoint, history,
+    Arrays, ContactFile, History, Monitor, OutputDir, OutputError, SheetFile, SheetPart,
+    StepRecord, ToolsFile, agree, checkpoint, history,
 };
-use crate::system::{NodeSample, System};
+use crate::system::{ContactPointSample, NodeSample, System};
 use crate::tool::PunchMotion;
 use figures::outline;
 pub(super) use figures::right_halves;
@@ -69,11 +70,7 @@ impl Recorder {
             _ => Ok(None),
         };
         let history = agree(comm, mine)?;
-        let points: Vec<[f64; 2]> = local
-            .contact_points(0.0, &vec![0.0; local.unknown_count()])
-            .iter()
-            .map(|point| point.reference)
-            .collect();
+        let points = local.contact_references();
         let part = SheetPart {
             coordinates: local.node_coordinates().to_vec(),
             quads: local.element_nodes().to_vec(),
@@ -187,7 +184,7 @@ impl Recorder {
         is_end || (self.every > 0 && self.records.len().is_multiple_of(self.every))
     }
 
-    /// Writes the fields at time `t` (ms) with the local values of the unknowns. Collective.
+    /// Writes the fields at time `t` (ms). Collective.
     ///
     /// # Errors
     /// If a file cannot be written.
@@ -195,40 +192,45 @@ impl Recorder {
         &mut self,
         t: f64,
         nodes: &[NodeSample],
-        system: &System,
-        values: &[f64],
+        points: &[ContactPointSample],
     ) -> Result<(), OutputError> {
-        let local = system.local();
-        let samples: Vec<FieldSample> = nodes.iter().map(field_sample).collect();
-        let points: Vec<ContactSample> = local
-            .contact_points(t, values)
-            .iter()
-            .map(|point| ContactSample {
-                displacement: point.displacement,
-                contact_pressure: point.pressure,
-                friction_traction: point.friction,
-                gap: point.gap,
-                contact_status: if point.active {
-                    1 + i32::from(point.slips)
-                } else {
-                    0
-                },
-            })
-            .collect();
-        self.sheet.write(t, &samples)?;
+        self.sheet.write(t, nodes)?;
         self.tools.write(t, self.motion.depth(t))?;
-        self.contact.write(t, &points)
+        self.contact.write(t, points)
     }
-}
 
-fn field_sample(node: &NodeSample) -> FieldSample {
-    FieldSample {
-        displacement: node.displacement,
-        stress: node.stress,
-        von_mises_stress: node.von_mises_stress,
-        equivalent_plastic_strain: node.equivalent_plastic_strain,
-        contact_pressure: node.contact_pressure,
-        gap: node.gap,
-        contact_status: i32::from(node.contact_pressure > 0.0),
+    /// Draws the deformed sheet between the tools at time `t` (ms), under the name `label`. Collective.
+    ///
+    /// # Errors
+    /// If the figure cannot be written.
+    pub fn shape(
+        &self,
+        label: &str,
+        t: f64,
+        nodes: &[NodeSample],
+        system: &System,
+    ) -> Result<(), OutputError> {
+        let elements = gather_elements(system.comm(), &DeformedElement::of(&self.part, nodes));
+        if self.history.is_none() {
+            return Ok(());
+        }
+        let (depth, local) = (self.motion.depth(t), system.local());
+        figures::shape(&self.folder, label, depth, &elements, local.problem())
+    }
+
+    /// Draws force against stroke beside the reference, on rank 0.
+    ///
+    /// # Errors
+    /// If the figure cannot be written.
+    pub fn force_figure(&self, reference: &ReferenceForce) -> Result<(), OutputError> {
+        if self.history.is_none() || self.records.is_empty() {
+            return Ok(());
+        }
+        plot::force(
+            self.folder.force_figure(),
+            "Force of the punch, whole sheet",
+            &self.records,
+            reference,
+        )
     }
 }

@@ -1,0 +1,202 @@
+//! The linear solve of a Newton step on the reduced set, without its contact unknowns.
+//!
+//! The condensed matrix has the same pattern for the whole run, so a direct solver analyses it once.
+
+use std::cell::RefCell;
+
+use mpi::traits::Communicator;
+use petsc::{FactorKind, Ksp, Matrix, Scatter, Vector, VectorRef};
+
+use super::System;
+use super::condensation::{Condensation, CondensedPattern};
+use super::substructures::Substructures;
+use super::tangent::JacobianEntries;
+
+/// How the condensed system is solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SolverChoice {
+    /// By whom.
+    pub method: CondensedMethod,
+    /// What PETSc's options for its solver begin with.
+    pub options_prefix: &'static str,
+}
+
+/// Who solves the condensed system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CondensedMethod {
+    /// [Substructures](super::substructures) where there is more than one rank and little between them, otherwise as
+    /// [`CondensedMethod::Whole`].
+    Substructures,
+    /// A linear solver of PETSc for the whole matrix.
+    Whole,
+}
+
+/// Solves with a Jacobian and an active set.
+pub struct CondensedSolve {
+    scatter: Scatter,
+    /// Displacements this rank owns.
+    owned: usize,
+    parts: RefCell<Parts>,
+}
+
+/// What changes from solve to solve, allocated once.
+struct Parts {
+    condensation: Condensation,
+    solver: Solver,
+    right_side: Vector,
+    step: Vector,
+    /// Of all local displacements: steps, and additions to the right-hand side.
+    local_step: Vec<f64>,
+    local_right_side: Vec<f64>,
+}
+
+/// Who solves the condensed system.
+enum Solver {
+    /// A linear solver of PETSc.
+    Whole(Matrix, Ksp),
+    /// Each rank its own elements, and all together what is between them.
+    Substructures(Box<Substructures>),
+}
+
+impl CondensedSolve {
+    /// For the Jacobians of this system. Collective.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn new(system: &System, choice: SolverChoice) -> petsc::Result<Self> {
+        let (comm, local, numbering) = (system.comm(), system.local(), system.numbering());
+        let (condensation, pattern) = Condensation::new(local, numbering, comm.rank() as usize);
+        let owned = system.owned_displacements();
+        let right_side = Vector::new(comm, owned)?;
+        let rows: Vec<i32> = local
+            .nodes
+            .iter()
+            .map(|&node| numbering.displacement_row(node) as i32)
+            .flat_map(|row| [row, row + 1])
+            .collect();
+        let parts = Parts {
+            solver: Solver::new(system, pattern, &rows, choice)?,
+            condensation,
+            step: right_side.duplicate()?,
+            local_step: vec![0.0; rows.len()],
+            local_right_side: vec![0.0; rows.len()],
+            right_side,
+        };
+        let scatter = Scatter::new(&parts.right_side, &rows)?;
+        Ok(Self {
+            scatter,
+            owned,
+            parts: RefCell::new(parts),
+        })
+    }
+
+    /// Factorises for a Jacobian and this rank's active set (ascending global rows). Says whether the matrix can be
+    /// used. Collective.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn factor(&self, jacobian: &JacobianEntries, active: &[i32]) -> petsc::Result<bool> {
+        let Parts {
+            condensation,
+            solver,
+            ..
+        } = &mut *self.parts.borrow_mut();
+        let values = condensation.condense(jacobian, active);
+        match solver {
+            Solver::Whole(matrix, solver) => {
+                matrix.set_values_coo(values)?;
+                Ok(!solver.set_up()?.is_diverged())
+            }
+            Solver::Substructures(solver) => solver.factor(values),
+        }
+    }
+
+    /// Solves for a right-hand side `r` on the reduced set, whose unknowns are in the order of their
+    /// global rows. Collective.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn solve(&self, r: &VectorRef, step: &mut VectorRef) -> petsc::Result<()> {
+        let Parts {
+            condensation,
+            solver,
+            right_side,
+            step: condensed_step,
+            local_step,
+            local_right_side,
+            ..
+        } = &mut *self.parts.borrow_mut();
+        let r = r.read()?;
+        let owned = self.owned;
+        right_side.write()?.copy_from_slice(&r[..owned]);
+        // The row of a prescribed displacement is its step.
+        self.scatter.forward(right_side, local_step)?;
+        condensation.forward(&r, local_step, local_right_side);
+        self.scatter.reverse_add(local_right_side, right_side)?;
+        match solver {
+            Solver::Whole(_, solver) => {
+                solver.solve(right_side, condensed_step)?;
+            }
+            Solver::Substructures(solver) => {
+                self.scatter.forward(right_side, local_step)?;
+                solver.solve(local_step, condensed_step)?;
+            }
+        }
+        self.scatter.forward(condensed_step, local_step)?;
+        let mut step = step.write()?;
+        step[..owned].copy_from_slice(&condensed_step.read()?);
+        condensation.backward(&r, local_step, &mut step);
+        Ok(())
+    }
+
+    /// The package that factorises, or the method that chooses it on each rank.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn factor_solver(&self) -> petsc::Result<Option<String>> {
+        match &self.parts.borrow().solver {
+            Solver::Whole(_, solver) => Ok(solver.factor_solver()?.or(solver.preconditioner()?)),
+            Solver::Substructures(_) => Ok(Some("mumps, substructures".to_owned())),
+        }
+    }
+}
+
+impl Solver {
+    /// For a pattern in local displacements, whose global rows these are.
+    fn new(
+        system: &System,
+        mut pattern: CondensedPattern,
+        rows: &[i32],
+        choice: SolverChoice,
+    ) -> petsc::Result<Self> {
+        let kind = match system.problem().friction_coefficient {
+            0.0 => FactorKind::Symmetric,
+            _ => FactorKind::General,
+        };
+        let prefix = choice.options_prefix;
+        if choice.method == CondensedMethod::Substructures
+            && let Some(solver) = Substructures::new(system, &pattern, kind, prefix)?
+        {
+            return Ok(Self::Substructures(Box::new(solver)));
+        }
+        for index in pattern.rows.iter_mut().chain(&mut pattern.columns) {
+            *index = usize::try_from(*index).map_or(-1, |local| rows[local]);
+        }
+        let matrix = Matrix::from_coo(
+            system.comm(),
+            system.owned_displacements(),
+            &pattern.rows,
+            &pattern.columns,
+        )?;
+        let mut solver = Ksp::new(system.comm())?;
+        solver.set_options_prefix(prefix)?;
+        solver.set_operator(&matrix)?;
+        solver.set_type("preonly")?;
+        solver.set_preconditioner(match kind {
+            FactorKind::Symmetric => "cholesky",
+            FactorKind::General => "lu",
+        })?;
+        solver.set_from_options()?;
+        Ok(Self::Whole(matrix, solver))
+    }
+}
