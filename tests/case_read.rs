@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use proptest::prelude::{any, proptest};
-use ssnp155::case::{Case, CaseError, Difference, Dynamics};
+use ssnp155::case::{Case, CaseError, Difference, Dynamics, OptionSource};
 
 fn options(given: &[(&str, &str)]) -> BTreeMap<String, String> {
     given
@@ -18,6 +18,34 @@ fn read(given: &[(&str, &str)]) -> Result<Case, CaseError> {
 
 fn refusal(given: &[(&str, &str)]) -> String {
     read(given).unwrap_err().to_string()
+}
+
+/// A source that knows one option only and fails on it.
+struct Broken(&'static str);
+
+impl OptionSource for Broken {
+    fn get(&self, name: &str) -> Result<Option<String>, CaseError> {
+        if name != self.0 {
+            return Ok(None);
+        }
+        Err(CaseError::Unreadable {
+            option: name.to_owned(),
+            reason: "PETSc error 63".to_owned(),
+        })
+    }
+}
+
+#[test]
+fn a_source_that_fails_is_no_reason_for_the_default() {
+    let reference = Case::reference().unwrap();
+    for (name, _) in reference.options() {
+        let error = Case::read(&Broken(name)).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            format!("option -{name} cannot be read: PETSc error 63")
+        );
+    }
+    assert_eq!(Case::read(&Broken("nobody's")).unwrap(), reference);
 }
 
 #[test]

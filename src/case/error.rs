@@ -9,6 +9,14 @@ use crate::text::show_real;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CaseError {
+    /// Whoever knows the options cannot be asked.
+    #[error("option -{option} cannot be read: {reason}")]
+    Unreadable {
+        /// Name without the dash.
+        option: String,
+        /// What the source says.
+        reason: String,
+    },
     /// An option that needs a value was given without one.
     #[error("option -{option} has no value: give {wanted} (default {default})")]
     NoValue {
