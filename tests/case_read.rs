@@ -219,7 +219,7 @@ fn the_benchmarks_table_from_a_file_is_still_the_reference() {
 fn numbers_are_finite_and_in_range() {
     assert_eq!(
         refusal(&[("stroke", "abc")]),
-        "option -stroke abc: this is not a number; give a real number in mm: 0 < value <= 100000 (default 28.5 mm)"
+        "option -stroke abc: this is not a number; specify a real number in mm: 0 < value <= 100000 (default 28.5 mm)"
     );
     assert!(refusal(&[("density", "1d-3")]).contains("the exponent is written with e, as in 1e-3"));
     assert!(refusal(&[("density", "1,5")]).contains("the decimal sign is a point"));
@@ -267,9 +267,11 @@ fn whole_numbers_words_and_flags_are_what_they_are() {
     }
     assert!(
         refusal(&[("dynamics", "fast")])
-            .contains("none of the choices; give one of the words: slow or none")
+            .contains("none of the choices; specify one of the words: slow or none")
     );
-    assert!(refusal(&[("quadrature", "4")]).contains("give one of the words: 2 or 3 (default 2)"));
+    assert!(
+        refusal(&[("quadrature", "4")]).contains("specify one of the words: 2 or 3 (default 2)")
+    );
     assert!(refusal(&[("extrapolate", "maybe")]).contains("neither true nor false"));
     for (text, on) in [
         ("", true),
@@ -300,7 +302,7 @@ fn an_option_without_its_value_is_refused() {
     }
     assert_eq!(
         refusal(&[("hardening_file", "")]),
-        "option -hardening_file has no value: give a path (default benchmark)"
+        "option -hardening_file has no value: specify a path (default benchmark)"
     );
 }
 

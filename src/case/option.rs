@@ -78,7 +78,7 @@ pub(crate) struct Opt<K: Kind> {
     pub(crate) name: &'static str,
     /// Unit, or nothing.
     pub(crate) unit: &'static str,
-    /// Default as a person would write it; read in the same way as what a person writes.
+    /// Default as a person would write it; read like what a person writes.
     pub(crate) default: &'static str,
     pub(crate) group: Group,
     /// One sentence.
