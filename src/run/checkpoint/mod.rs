@@ -15,7 +15,7 @@ use crate::case::{Case, Difference, Restart};
 use crate::material::Hardening;
 use crate::output::{Arrays, OutputError, agree, checkpoint};
 use crate::ranks::broadcast_bytes;
-use crate::system::System;
+use crate::system::{History, System};
 
 pub(super) use state::RunState;
 
@@ -47,11 +47,13 @@ impl Resumed {
         self.state.time
     }
 
-    /// Puts the history of material and contact points back into the system.
-    pub(super) fn restore_history(&self, system: &System) -> Result<(), OutputError> {
-        let restored = system.restore(&self.state.snapshot);
-        let path = self.path.clone();
-        restored.map_err(|reason| OutputError::Checkpoint { path, reason })
+    /// The history of the system's material and contact points.
+    pub(super) fn history(&self, system: &System) -> Result<History, OutputError> {
+        let restored = self.state.snapshot.restore(system);
+        restored.map_err(|error| OutputError::Checkpoint {
+            path: self.path.clone(),
+            reason: error.to_string(),
+        })
     }
 
     /// For each of this rank's nodes and of its contact points, the row that has it in the field files so far.

@@ -7,7 +7,7 @@ use petsc::SnesReason;
 use super::residual_history::ResidualHistory;
 use super::solve_watch::{Chattering, SolveWatch};
 use crate::mesh::SurfaceSide;
-use crate::system::{ContactPlace, FailedElement, System};
+use crate::system::{ContactPlace, ElementFailure, FailedElement, System};
 use crate::text::number;
 
 /// Every kind of chattering; the place in this list is its number among the ranks.
@@ -43,6 +43,7 @@ impl Refusal {
         reason: SnesReason,
         iterations: u32,
         tolerance: f64,
+        failure: Option<ElementFailure>,
     ) -> Self {
         let mark = |kind| u8::from(kind == KINDS[1]);
         let mine: Vec<_> = watch
@@ -61,7 +62,7 @@ impl Refusal {
                 .into_iter()
                 .map(|place| (place, KINDS[usize::from(place.mark)]))
                 .collect(),
-            element: system.take_shared_failure(),
+            element: FailedElement::over_ranks(system.comm(), failure),
         }
     }
 
