@@ -37,3 +37,4 @@ pub use provenance::Difference;
 pub use reference::{Instant, Origin, ReferenceValue, Tolerance};
 pub use reference_force::ReferenceForce;
 pub use unused::check_unused;
+pub(crate) use unused::condensed_option;

@@ -29,6 +29,23 @@ pub struct Case {
     pub resuming: Resuming,
 }
 
+impl Case {
+    /// Length of an element along the sheet, mm.
+    pub fn element_length(&self) -> f64 {
+        self.sheet.half_length() / self.discretisation.nx as f64
+    }
+
+    /// Distance between neighbouring contact points, mm; with moving points, the length of the edge each has for itself.
+    pub fn contact_spacing(&self) -> f64 {
+        let edge = self.element_length();
+        match self.discretisation.contact_location {
+            ContactLocation::Points => edge / self.discretisation.contact_points_per_edge as f64,
+            ContactLocation::Nodes => edge / 2.0,
+            ContactLocation::Closest => edge,
+        }
+    }
+}
+
 /// The sheet: x in [0, length / 2], y in [0, thickness]; x = 0 is the plane of symmetry.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sheet {

@@ -5,6 +5,14 @@ use super::option::Described;
 use super::table::TABLE;
 use crate::text::shortened;
 
+/// The name of an option of the condensed system's solver: its prefix before that of PETSc's.
+macro_rules! condensed_option {
+    ($option:literal) => {
+        concat!("condensed_", $option)
+    };
+}
+pub(crate) use condensed_option;
+
 /// How PETSc's option names begin. Families end with an underscore, the rest are names (or beginnings of names) that stand
 /// alone; general words such as `use_` or `start_` are only listed with what follows in PETSc.
 const PETSC_NAMES: &[&str] = &[
@@ -21,7 +29,7 @@ const PETSC_NAMES: &[&str] = &[
     "ao_",
     "log_",
     "sub_",
-    "condensed_",
+    condensed_option!(""),
     "options_",
     "viewer_",
     "draw_",
