@@ -86,14 +86,14 @@ def fits(browser):
 def says(browser, summary):
     status = browser.find_element(By.ID, "status").text
     if summary["status"] == "finished":
-        expect("Finished" in status, f"the status says {status!r}")
+        expect("FINISHED" in status, f"the status says {status!r}")
     else:
         expect("FAILED" in status, f"the status says {status!r}")
         failure = browser.find_element(By.ID, "failure").text
         for part in ("place", "cause"):
-            expect(summary["diagnosis"][part] in failure, f"the page does not tell the {part}")
+            expect(summary["diagnosis"][part] in failure, f"the page does not say the {part}")
         for remedy in summary["diagnosis"]["remedies"]:
-            expect(remedy in failure, f"the page does not tell: {remedy}")
+            expect(remedy in failure, f"the page does not say: {remedy}")
     rows = len(browser.find_elements(By.CSS_SELECTOR, "#verdict-table tbody tr"))
     expect(rows == len(summary["verdicts"]), f"{rows} rows for {len(summary['verdicts'])} verdicts")
 

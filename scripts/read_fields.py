@@ -4,7 +4,8 @@
     scripts/read_fields.py FOLDER        (needs: pip install vtk)
 
 Opens fields.vtkhdf, tools.vtkhdf and contact.vtkhdf with VTK's own reader (vtkHDFReader), goes through all time steps
-and checks that every array is present, has the right number of components and is finite. Prints one table per file.
+and checks that every array is present, has the right number of components and is finite, and that states of contact are
+those that there are. Prints one table per file.
 Exit code 0 if all is well; otherwise 1 with a sentence for each thing that is not.
 """
 
@@ -18,6 +19,10 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
 VERTEX, POLY_LINE, QUADRATIC_QUAD = 1, 4, 23
+
+# contact_status: 0 open, 1 stick, 2 slip forward, 3 slip backward; in the sheet -1 at nodes that no tool can touch.
+HIGHEST_STATE = 3
+LOWEST_STATE = {"fields.vtkhdf": -1}
 
 # File: cell type, point arrays and cell arrays with their number of components.
 EXPECTED = {
@@ -121,6 +126,10 @@ class File:
                     self.check_arrays(grid.GetPointData(), self.point_arrays, grid.GetNumberOfPoints(), "point", step)
                 if grid.GetNumberOfCells():
                     self.check_arrays(grid.GetCellData(), self.cell_arrays, grid.GetNumberOfCells(), "cell", step)
+        low, high = self.ranges.get(("point", "contact_status"), (0, 0))
+        lowest = LOWEST_STATE.get(self.path.name, 0)
+        if not lowest <= low <= high <= HIGHEST_STATE:
+            self.complain(f"contact_status goes from {low} to {high}, allowed is {lowest} to {HIGHEST_STATE}")
         if len(sizes) != 1:
             self.complain("the mesh changes between the steps")
         grids = next(iter(sizes))

@@ -10,6 +10,7 @@ pub mod element;
 pub mod material;
 pub mod mesh;
 pub mod output;
+pub mod plane;
 pub mod ranks;
 pub mod run;
 pub mod system;

@@ -1,4 +1,4 @@
-//! Text from outside, read and quoted within bounds, and numbers as a person would write them.
+//! Text from outside, read and quoted within bounds, and numbers as text.
 
 use std::io::Read;
 use std::path::Path;
@@ -49,7 +49,8 @@ pub(crate) fn shortened(text: &str) -> String {
     }
 }
 
-/// Shortest text that reads back as the same number, with an exponent where that is shorter to read.
+/// Shortest text that reads back as the same number, with an exponent where that is easier to read: a value as a person
+/// would write it on the command line.
 pub(crate) fn show_real(value: f64) -> String {
     let size = value.abs();
     if size != 0.0 && !(1e-2..1e6).contains(&size) {
@@ -59,9 +60,51 @@ pub(crate) fn show_real(value: f64) -> String {
     }
 }
 
+/// Six significant digits without trailing zeros; powers of ten for the very small and the very large: a value in a table
+/// or a sentence.
+pub(crate) fn number(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let magnitude = value.abs().log10().floor();
+    if !(-4.0..7.0).contains(&magnitude) {
+        return format!("{value:.3e}");
+    }
+    let decimals = (5.0 - magnitude).clamp(0.0, 9.0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// The number with this many significant digits that is nearest to `value`.
+pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
+    let decimals = digits.saturating_sub(1);
+    format!("{value:.decimals$e}").parse().unwrap_or(value)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_keep_six_digits() {
+        assert_eq!(number(180.612_345), "180.612");
+        assert_eq!(number(-0.000_123_456_7), "-0.000123457");
+        assert_eq!(number(1_234_567.0), "1234567");
+        assert_eq!(number(2.5e-12), "2.500e-12");
+        assert_eq!(number(f64::NAN), "NaN");
+    }
+
+    #[test]
+    fn a_rounded_number_is_written_without_the_rest() {
+        assert_eq!(show_real(3.0 * 0.1), "0.30000000000000004");
+        assert_eq!(show_real(rounded(3.0 * 0.1, 6)), "0.3");
+        assert_eq!(rounded(2.123_456_789, 7), 2.123_457);
+        assert!(rounded(f64::NAN, 7).is_nan());
+    }
 
     #[test]
     fn what_never_ends_is_not_begun() {

@@ -9,7 +9,7 @@ use std::ffi::OsString;
 use std::os::unix::ffi::OsStringExt;
 use std::path::Path;
 
-use bad_input_table::{FILES, Given, SLIPS, Slip};
+use bad_input_table::{FILES, Given, MISTAKES, Mistake};
 use program::{Ended, run, run_in, scratch};
 
 /// Longest time an answer may take, s.
@@ -33,8 +33,8 @@ fn prepared() -> std::path::PathBuf {
     folder
 }
 
-fn answer(slip: &Slip, ranks: usize, folder: &Path) -> Ended {
-    let (words, environment): (Vec<OsString>, _) = match slip.given {
+fn answer(mistake: &Mistake, ranks: usize, folder: &Path) -> Ended {
+    let (words, environment): (Vec<OsString>, _) = match mistake.given {
         Given::Words(words) => (words.split_whitespace().map(OsString::from).collect(), None),
         Given::Environment(value) => (Vec::new(), Some(("PETSC_OPTIONS", value))),
         Given::Empty(option) => (vec![option.into(), "".into()], None),
@@ -52,22 +52,22 @@ fn listing(folder: &Path) -> BTreeSet<String> {
 }
 
 #[test]
-fn every_slip_of_the_table_gets_its_sentence_and_touches_nothing() {
+fn every_mistake_of_the_table_gets_its_sentence_and_touches_nothing() {
     let folder = prepared();
     let before = listing(&folder);
     let mut wrong = Vec::new();
-    for slip in SLIPS {
-        for &ranks in slip.ranks {
-            let ended = answer(slip, ranks, &folder);
+    for mistake in MISTAKES {
+        for &ranks in mistake.ranks {
+            let ended = answer(mistake, ranks, &folder);
             let text = ended.text();
             let good = ended.code == Some(2)
-                && ended.stderr.trim_end() == format!("ssnp155: {}", slip.sentence)
+                && ended.stderr.trim_end() == format!("ssnp155: {}", mistake.sentence)
                 && ended.stdout.trim().is_empty();
             if !good || text.contains("panicked") || text.contains("PETSC ERROR") {
                 let end = ended.code;
                 wrong.push(format!(
                     "{} ({ranks} ranks, code {end:?}): {text}",
-                    slip.what
+                    mistake.what
                 ));
             }
         }
@@ -87,18 +87,18 @@ fn the_page_is_rendered_from_the_table() {
          and, where the third\ncolumn says so, on more.\n\n\
          | what is wrong | given | ranks | answer |\n|---|---|---|---|\n",
     );
-    for slip in SLIPS {
-        let given = match slip.given {
+    for mistake in MISTAKES {
+        let given = match mistake.given {
             Given::Words(words) => format!("`{words}`"),
             Given::Environment(value) => format!("`PETSC_OPTIONS='{value}'`"),
             Given::Empty(option) => format!("`{option} \"\"`"),
             Given::Bytes(bytes) => format!("`{}`", bytes.escape_ascii()),
         };
-        let ranks: Vec<String> = slip.ranks.iter().map(usize::to_string).collect();
-        let sentence = slip.sentence.replace('<', "&lt;").replace('|', "\\|");
+        let ranks: Vec<String> = mistake.ranks.iter().map(usize::to_string).collect();
+        let sentence = mistake.sentence.replace('<', "&lt;").replace('|', "\\|");
         page += &format!(
             "| {} | {given} | {} | {sentence} |\n",
-            slip.what,
+            mistake.what,
             ranks.join(", ")
         );
     }
@@ -118,7 +118,7 @@ fn the_page_is_rendered_from_the_table() {
 }
 
 #[test]
-fn neither_a_slip_nor_a_question_touches_an_earlier_run() {
+fn neither_a_mistake_nor_a_question_touches_an_earlier_run() {
     let folder = scratch("bad-input-untouched");
     let history = folder.join("history.csv");
     std::fs::write(&history, "earlier").unwrap();
@@ -146,7 +146,18 @@ fn small(ranks: usize, name: &str, more: &str) -> Ended {
 }
 
 #[test]
-fn an_option_that_petsc_does_not_read_is_told_after_the_run() {
+fn the_stepper_that_fits_the_equations_may_be_named() {
+    for (name, words) in [
+        ("slow", "-dynamics slow -ts_type alpha2"),
+        ("static", "-dynamics none -ts_type beuler"),
+    ] {
+        let ended = small(1, &format!("bad-input-stepper-{name}"), words);
+        assert_eq!(ended.code, Some(0), "{words}: {}", ended.text());
+    }
+}
+
+#[test]
+fn an_option_that_petsc_does_not_read_is_named_after_the_run() {
     let ended = small(2, "bad-input-unread", "-snes_maxit 4");
     assert_eq!(ended.code, Some(0), "{}", ended.text());
     let warning = "warning: option -snes_maxit 4 has no effect: PETSc did not read it; check its spelling and whether \

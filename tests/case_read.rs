@@ -105,6 +105,7 @@ fn what_is_shown_reads_back_as_the_same_case() {
         ("young_modulus", "70500.001"),
         ("poisson_ratio", "0.33"),
         ("density", "2.8e-3"),
+        ("hardening", "table"),
         ("hardening_file", "inputs/reference/hardening.csv"),
         ("sheet_nx", "171"),
         ("sheet_ny", "6"),

@@ -176,14 +176,19 @@ fn elastic_forces_are_the_slope_of_the_stored_energy() {
 }
 
 #[test]
-fn a_point_turned_over_is_refused() {
+fn an_inverted_element_is_refused() {
     let material = aluminium();
     let kernel = Quad8::new(&NODES, Quadrature::Reduced);
     let mirrored = NODES.map(|[x, _]| [-2.0 * x, 0.0]);
     let states = vec![PointState::VIRGIN; 4];
     let mut out = ElementForce::ZERO;
     let refused = kernel.internal_force(&mirrored, &material, &states, false, &mut out);
-    assert!(refused.unwrap_err().to_string().contains("turned over"));
+    assert!(
+        refused
+            .unwrap_err()
+            .to_string()
+            .contains("the element is inverted")
+    );
 }
 
 /// Unknowns with plastic strain, contact on both tools, and open points.

@@ -10,11 +10,12 @@ use std::process::Command;
 use hdf5::{File, H5Type};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
+use ssnp155::contact::ContactState;
 use ssnp155::output::plot::{DeformedElement, gather_elements};
 use ssnp155::output::{
-    ContactFile, ContactSample, FieldSample, History, OutputDir, OutputError, SheetFile, SheetPart,
-    StepRecord, ToolsFile,
+    ContactFile, History, OutputDir, OutputError, SheetFile, SheetPart, StepRecord, ToolsFile,
 };
+use ssnp155::system::{ContactPointSample, NodeSample};
 
 const STEPS: usize = 3;
 const FOLDER: &str = "OUTPUT_FIELDS_FOLDER";
@@ -47,17 +48,27 @@ fn part_of(comm: &SimpleCommunicator) -> SheetPart {
     }
 }
 
-/// A state anyone can recompute from position and step.
-fn sample([x, y]: [f64; 2], step: usize) -> FieldSample {
+/// Another state of contact in every step; none at half height.
+fn state(y: f64, step: usize) -> Option<ContactState> {
+    let states = [
+        ContactState::Stick,
+        ContactState::SlipForward,
+        ContactState::SlipBackward,
+    ];
+    (y != 0.5).then_some(states[step])
+}
+
+/// What anyone can recompute from position and step.
+fn sample([x, y]: [f64; 2], step: usize) -> NodeSample {
     let s = step as f64;
-    FieldSample {
+    NodeSample {
         displacement: [0.1 * s, -0.01 * x * s],
         stress: [x, y, 0.342 * (x + y), s],
         von_mises_stress: x * x + s,
         equivalent_plastic_strain: 1e-3 * s,
         contact_pressure: y * s,
         gap: 1.0 - y,
-        contact_status: step as i32,
+        contact_state: state(y, step),
     }
 }
 
@@ -96,19 +107,20 @@ fn worker() {
     let mut history = (comm.rank() == 0).then(|| History::create(out.history()).unwrap());
     for step in 0..STEPS {
         let t_ms = 2.5 * step as f64;
-        let samples: Vec<FieldSample> = part
+        let samples: Vec<NodeSample> = part
             .coordinates
             .iter()
             .map(|&at| sample(at, step))
             .collect();
-        let points: Vec<ContactSample> = samples
+        let points: Vec<ContactPointSample> = samples
             .iter()
-            .map(|s| ContactSample {
+            .map(|s| ContactPointSample {
+                reference: [0.0; 2],
                 displacement: s.displacement,
-                contact_pressure: s.contact_pressure,
-                friction_traction: 0.1342 * s.contact_pressure,
+                pressure: s.contact_pressure,
+                friction: 0.1342 * s.contact_pressure,
                 gap: s.gap,
-                contact_status: s.contact_status,
+                state: s.contact_state.unwrap_or_default(),
             })
             .collect();
         sheet.write(t_ms, &samples).unwrap();
@@ -124,7 +136,7 @@ fn worker() {
         }
     }
     // One rank hands over too little: all ranks say so, none waits, and nothing is written.
-    let too_few = vec![FieldSample::default(); part.coordinates.len().saturating_sub(1)];
+    let too_few = vec![sample([0.0; 2], 0); part.coordinates.len().saturating_sub(1)];
     let error = sheet.write(99.0, &too_few).unwrap_err();
     assert!(
         matches!(error, OutputError::Mismatch { .. }),
@@ -140,7 +152,7 @@ fn worker() {
         comm.rank()
     );
     println!("as expected: {error}");
-    let samples: Vec<FieldSample> = part.coordinates.iter().map(|&at| sample(at, 2)).collect();
+    let samples: Vec<NodeSample> = part.coordinates.iter().map(|&at| sample(at, 2)).collect();
     let all = gather_elements(&comm, &DeformedElement::of(&part, &samples));
     if comm.rank() == 0 {
         let corners: Vec<f64> = all.iter().map(|element| element.nodes[0][0]).collect();
@@ -261,7 +273,8 @@ fn check(out: &Path, ranks: usize) {
             assert_eq!(displacement[3 * row..3 * row + 2], expected.displacement);
             assert_eq!(stress[6 * row..6 * row + 4], expected.stress);
             assert_eq!(von_mises[row], expected.von_mises_stress);
-            assert_eq!(status[row], expected.contact_status);
+            let code = expected.contact_state.map_or(-1, ContactState::code);
+            assert_eq!(status[row], code);
         }
     }
 

@@ -5,8 +5,9 @@ use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
 
 use ssnp155::case::Case;
-use ssnp155::output::plot::{self, DeformedElement, Shape, View};
-use ssnp155::output::{FieldSample, SheetPart, StepRecord};
+use ssnp155::output::plot::{self, DeformedElement, Shape};
+use ssnp155::output::{SheetPart, StepRecord};
+use ssnp155::system::NodeSample;
 
 fn file(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("figures");
@@ -76,17 +77,21 @@ fn bent_sheet(columns: usize, rows: usize, angle: f64, stroke: f64) -> Vec<Defor
                 * fade
                 * if angle > 0.0 { 1.0 } else { 0.0 };
             part.coordinates.push([x, y]);
-            samples.push(FieldSample {
+            samples.push(NodeSample {
                 displacement: [bent[0] - x, bent[1] - y],
+                stress: [0.0; 4],
+                von_mises_stress: 0.0,
                 equivalent_plastic_strain: strain,
-                ..FieldSample::default()
+                contact_pressure: 0.0,
+                gap: 0.0,
+                contact_state: None,
             });
         }
     }
     DeformedElement::of(&part, &samples)
 }
 
-fn draw(name: &str, elements: &[DeformedElement], stroke_mm: f64, view: View) -> String {
+fn draw(name: &str, elements: &[DeformedElement], stroke_mm: f64) -> String {
     let (die, punch) = (die(), punch());
     let title = format!("Deformed sheet at a stroke of {stroke_mm} mm");
     let shape = Shape {
@@ -95,8 +100,7 @@ fn draw(name: &str, elements: &[DeformedElement], stroke_mm: f64, view: View) ->
         die: &die,
         punch: &punch,
         stroke_mm,
-        plastic_strain_max: None,
-        view,
+        sheet: [60.0, 1.0],
     };
     plot::shape(file(name), &shape).unwrap();
     std::fs::read_to_string(file(name)).unwrap()
@@ -145,27 +149,43 @@ fn the_force_figure_shows_loading_unloading_and_the_reference() {
 #[test]
 fn the_shape_figure_shows_the_sheet_at_several_instants() {
     let full = bent_sheet(170, 5, 79.8_f64.to_radians(), 28.5);
-    let svg = draw("shape-loaded.svg", &full, 28.5, View::Whole);
+    let svg = draw("shape-loaded.svg", &full, 28.5);
     // At least both halves of every element, two tools and the stripes of the colour bar; then the close-up.
     assert!(svg.matches("<polygon").count() > 2 * 850 + 2 + 128);
-    draw(
-        "shape-half.svg",
-        &bent_sheet(170, 5, 0.7, 14.25),
-        14.25,
-        View::Whole,
-    );
-    draw(
-        "shape-start.svg",
-        &bent_sheet(170, 5, 0.0, 0.0),
-        0.0,
-        View::Whole,
-    );
-    draw(
-        "shape-window.svg",
-        &full,
-        28.5,
-        View::Window([20.0, 28.0, -12.0, -5.0]),
-    );
+    draw("shape-half.svg", &bent_sheet(170, 5, 0.7, 14.25), 14.25);
+    draw("shape-start.svg", &bent_sheet(170, 5, 0.0, 0.0), 0.0);
+    // A sheet of another size fills its picture as well.
+    let [small, large] = [0.5, 40.0].map(|factor: f64| {
+        let scaled = |line: Vec<[f64; 2]>| -> Vec<[f64; 2]> {
+            line.into_iter().map(|x| x.map(|x| factor * x)).collect()
+        };
+        let elements: Vec<DeformedElement> = full
+            .iter()
+            .map(|element| DeformedElement {
+                nodes: element.nodes.map(|x| x.map(|x| factor * x)),
+                ..*element
+            })
+            .collect();
+        let shape = Shape {
+            title: "",
+            elements: &elements,
+            die: &scaled(die()),
+            punch: &scaled(punch()),
+            stroke_mm: factor * 28.5,
+            sheet: [factor * 60.0, factor],
+        };
+        plot::shape_svg(&shape).unwrap()
+    });
+    let size = |svg: &str| {
+        svg.lines()
+            .next()
+            .unwrap()
+            .split('>')
+            .next()
+            .unwrap()
+            .to_owned()
+    };
+    assert_eq!(size(&small), size(&large));
 }
 
 #[test]
@@ -176,8 +196,7 @@ fn a_shape_without_elements_is_an_error_with_the_path() {
         die: &[],
         punch: &[],
         stroke_mm: 0.0,
-        plastic_strain_max: None,
-        view: View::Whole,
+        sheet: [60.0, 1.0],
     };
     let error = plot::shape(file("never.svg"), &shape)
         .unwrap_err()

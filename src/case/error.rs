@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::material::hardening::HardeningError;
+use crate::material::hardening::{HardeningError, ImpossibleLaw};
 use crate::text::show_real;
 
 /// Why a case is refused. The text is one sentence for the person who wrote the options.
@@ -106,6 +106,24 @@ pub enum CaseError {
     /// The hardening table is refused; what it says names the file and the line.
     #[error("option -hardening_file: {0}")]
     Hardening(#[from] HardeningError),
+    /// The constants of a hardening law make no law together.
+    #[error("option -hardening {}: {}", .0.law, .0.problem)]
+    ImpossibleLaw(#[from] ImpossibleLaw),
+    /// An option of another hardening law than the one in use.
+    #[error(
+        "option -{option} {given} has no effect with -hardening {law}: it belongs to -hardening {owner}; leave it out, or \
+         choose the other law"
+    )]
+    OtherLaw {
+        /// Name without the dash.
+        option: &'static str,
+        /// The value that was given.
+        given: String,
+        /// Names of the laws it belongs to.
+        owner: String,
+        /// Name of the law in use.
+        law: &'static str,
+    },
     /// The punch passes between two contact points. Lengths in mm.
     #[error(
         "the mesh cannot feel the punch: -punch_radius {} mm is smaller than the distance between contact points, \
@@ -160,14 +178,14 @@ pub enum CaseError {
     },
     /// The end of the sheet would be drawn over the shoulder. Lengths in mm.
     #[error(
-        "the sheet slips off the die's shoulder: at -stroke {stroke} mm the way round the punch to the shoulder is \
+        "the sheet slips off the die's shoulder: at -stroke {stroke} mm the path round the punch to the shoulder is \
          {path:.3} mm and half of -sheet_length is {half_length} mm; give a -sheet_length above {least_length:.3} mm \
          or a shorter stroke"
     )]
     SheetSlipsOff {
         /// Stroke of the punch.
         stroke: f64,
-        /// Way from the middle of the sheet round the punch to the shoulder.
+        /// Path from the middle of the sheet round the punch to the shoulder.
         path: f64,
         /// Half length of the sheet.
         half_length: f64,
@@ -202,18 +220,22 @@ pub enum CaseError {
         /// Elements through the thickness.
         ny: usize,
     },
-    /// An option of PETSc that the program has to decide itself.
+    /// An option of PETSc's that the program has to decide itself.
     #[error(
-        "option -{option} {given}: the program chooses the steps itself, so only {allowed} works here; leave it out, and \
-         set the steps with -dt_initial, -dt_max, -dt_min or -fixed_steps_load"
+        "option -{option} {given}: {reason}{}; leave it out, and {instead}",
+        allowed.map_or_else(String::new, |allowed| format!(", so only {allowed} works here"))
     )]
-    NotYours {
+    Reserved {
         /// Name without the dash.
         option: &'static str,
         /// The value that was given.
         given: String,
-        /// The one value that can be given.
-        allowed: &'static str,
+        /// Why the program decides.
+        reason: &'static str,
+        /// The one value that can be given, if there is one.
+        allowed: Option<&'static str>,
+        /// What else to do.
+        instead: &'static str,
     },
     /// The table of reference values is malformed.
     #[error("reference values, line {line}: {problem}")]

@@ -49,10 +49,14 @@ pub fn help_text() -> String {
         for option in options_of(group) {
             let name = format!("-{}", option.name());
             let default = option.default_with_unit();
-            text.push_str(&format!(
-                "{name:<name_width$}  {default:<default_width$}  {}\n",
-                option.allowed()
-            ));
+            let begun = format!("{name:<name_width$}  {default:<default_width$}  ");
+            let allowed = option.allowed();
+            if begun.chars().count() + allowed.chars().count() <= WIDTH {
+                text.push_str(&format!("{begun}{allowed}\n"));
+            } else {
+                text.push_str(&format!("{}\n", begun.trim_end()));
+                wrap(&mut text, &allowed, 6);
+            }
             wrap(&mut text, option.meaning(), 6);
         }
     }

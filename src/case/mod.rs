@@ -7,6 +7,7 @@
 mod arguments;
 mod error;
 mod geometry;
+mod hardening;
 mod help;
 mod kind;
 mod kind_resuming;

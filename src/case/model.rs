@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use super::error::CaseError;
-use super::{geometry, table};
+use super::{geometry, hardening, table};
 use crate::contact::ContactLocation;
 use crate::element::Quadrature;
 use crate::material::Hardening;
+use crate::material::hardening::Declaration;
 use crate::tool::PunchMotion;
 
 /// Where the texts of options come from: PETSc's option database, or a map in tests.
@@ -132,9 +133,13 @@ pub struct Material {
     pub poisson_ratio: f64,
     /// Density, g/mm3.
     pub density: f64,
-    /// Path of the hardening table, or the word `benchmark` for the one in the program.
+    /// Which hardening law.
+    pub hardening_law: &'static Declaration,
+    /// Values of its constants, in the order of its declaration.
+    pub hardening_constants: Vec<f64>,
+    /// Path of the hardening table, or the word `benchmark` for the one in the program, also for another law.
     pub hardening_file: String,
-    /// Yield stress (MPa) against equivalent plastic strain.
+    /// The law with these constants: flow stress (MPa) against equivalent plastic strain.
     pub hardening: Hardening,
 }
 
@@ -237,7 +242,7 @@ impl Case {
     /// The case the options describe; options that are not given have their defaults, which are the reference case.
     ///
     /// # Errors
-    /// The first option that is malformed or out of range, a hardening table that cannot be used, or a combination
+    /// The first option that is malformed or out of range, a hardening law that cannot be used, or a combination
     /// that cannot work.
     pub fn read(options: &dyn OptionSource) -> Result<Case, CaseError> {
         let case = Case {
@@ -312,17 +317,14 @@ impl Case {
 
 fn read_material(options: &dyn OptionSource) -> Result<Material, CaseError> {
     let young_modulus = table::YOUNG_MODULUS.read(options)?;
-    let hardening_file = table::HARDENING_FILE.read(options)?;
-    let hardening = if hardening_file == table::BENCHMARK_TABLE {
-        Hardening::benchmark(young_modulus)?
-    } else {
-        Hardening::from_file(std::path::Path::new(&hardening_file), young_modulus)?
-    };
+    let (law, constants, file, hardening) = hardening::read(options, young_modulus)?;
     Ok(Material {
         young_modulus,
         poisson_ratio: table::POISSON_RATIO.read(options)?,
         density: table::DENSITY.read(options)?,
-        hardening_file,
+        hardening_law: law,
+        hardening_constants: constants,
+        hardening_file: file,
         hardening,
     })
 }

@@ -72,44 +72,50 @@ pub(crate) struct Opt<K: Kind> {
 
 impl<K: Kind> Opt<K> {
     /// The value given by the source, or the default.
-    pub(crate) fn read(&self, source: &dyn OptionSource) -> Result<K::Value, CaseError> {
-        let given = source.get(self.name);
-        let text = given.as_deref().unwrap_or(self.default).trim();
-        let default = with_unit(self.default, self.unit);
-        if text.is_empty() && !self.kind.value_may_be_missing() {
-            return Err(CaseError::NoValue {
-                option: self.name,
-                wanted: self.wanted(),
-                default,
-            });
-        }
-        self.kind
-            .parse(text)
-            .map_err(|problem| CaseError::BadValue {
-                option: self.name,
-                given: shortened(text),
-                problem,
-                wanted: self.wanted(),
-                default,
-            })
-    }
-
-    fn wanted(&self) -> String {
-        let (noun, allowed) = (self.kind.noun(), self.kind.allowed());
-        let unit = if self.unit.is_empty() {
-            String::new()
-        } else {
-            format!(" in {}", self.unit)
-        };
-        if noun == "a path" {
-            noun.to_owned()
-        } else {
-            format!("{noun}{unit}: {allowed}")
-        }
+    pub(crate) fn read(&self, source: &dyn OptionSource) -> Result<K::Value, CaseError>
+    where
+        K: Sync,
+    {
+        read(self, &self.kind, source)
     }
 }
 
-fn with_unit(value: &str, unit: &str) -> String {
+/// The value of this kind given by the source for an option, or the option's default.
+pub(crate) fn read<K: Kind>(
+    option: &dyn Described,
+    kind: &K,
+    source: &dyn OptionSource,
+) -> Result<K::Value, CaseError> {
+    let given = source.get(option.name());
+    let text = given.as_deref().unwrap_or(option.default()).trim();
+    if text.is_empty() && !kind.value_may_be_missing() {
+        return Err(CaseError::NoValue {
+            option: option.name(),
+            wanted: wanted(option, kind),
+            default: option.default_with_unit(),
+        });
+    }
+    kind.parse(text).map_err(|problem| CaseError::BadValue {
+        option: option.name(),
+        given: shortened(text),
+        problem,
+        wanted: wanted(option, kind),
+        default: option.default_with_unit(),
+    })
+}
+
+fn wanted(option: &dyn Described, kind: &impl Kind) -> String {
+    let (noun, allowed, unit) = (kind.noun(), kind.allowed(), option.unit());
+    if noun == "a path" {
+        noun.to_owned()
+    } else if unit.is_empty() {
+        format!("{noun}: {allowed}")
+    } else {
+        format!("{noun} in {unit}: {allowed}")
+    }
+}
+
+pub(crate) fn with_unit(value: &str, unit: &str) -> String {
     if unit.is_empty() {
         value.to_owned()
     } else {
@@ -126,8 +132,8 @@ pub(crate) trait Described: Sync {
     fn meaning(&self) -> &'static str;
     /// The range or the choices.
     fn allowed(&self) -> String;
-    /// The value a case has, as text.
-    fn shown(&self, case: &Case) -> String;
+    /// The value a case has, as text; none if the case has no use for the option.
+    fn shown(&self, case: &Case) -> Option<String>;
     /// The range or the choices, followed by the unit.
     fn allowed_with_unit(&self) -> String {
         with_unit(&self.allowed(), self.unit())
@@ -157,7 +163,7 @@ impl<K: Kind + Sync> Described for Opt<K> {
     fn allowed(&self) -> String {
         self.kind.allowed()
     }
-    fn shown(&self, case: &Case) -> String {
-        self.kind.show(&(self.value)(case))
+    fn shown(&self, case: &Case) -> Option<String> {
+        Some(self.kind.show(&(self.value)(case)))
     }
 }

@@ -19,11 +19,12 @@ pub struct Difference {
 }
 
 impl Case {
-    /// Every option with the value in effect, in the order of the table. Read again, they give the same case.
+    /// Every option the case has a use for, with the value in effect, in the order of the table. Read again, they give the
+    /// same case.
     pub fn options(&self) -> Vec<(&'static str, String)> {
         TABLE
             .iter()
-            .map(|option| (option.name(), option.shown(self)))
+            .filter_map(|option| Some((option.name(), option.shown(self)?)))
             .collect()
     }
 
@@ -43,16 +44,18 @@ impl Case {
         TABLE
             .iter()
             .filter(compared)
-            .map(|option| {
+            .filter_map(|option| {
+                // Constants of another law than that of this case are not shown: the law itself differs then.
+                let value = option.shown(self)?;
                 let then = saved.get(option.name()).cloned().unwrap_or_else(missing);
-                (
+                Some((
                     option.group().defines_model(),
                     Difference {
                         option: option.name(),
-                        value: option.shown(self),
+                        value,
                         reference: then,
                     },
-                )
+                ))
             })
             .filter(|(_, difference)| difference.value != difference.reference)
             .fold((Vec::new(), Vec::new()), |mut both, (model, difference)| {
@@ -77,10 +80,14 @@ impl Case {
             .iter()
             .filter(|option| option.group().defines_model())
             .filter(|option| option.name() != table::HARDENING_FILE.name || !same_curve)
-            .map(|option| Difference {
-                option: option.name(),
-                value: option.shown(self),
-                reference: option.shown(&reference),
+            .filter_map(|option| {
+                Some(Difference {
+                    option: option.name(),
+                    value: option.shown(self)?,
+                    reference: option
+                        .shown(&reference)
+                        .unwrap_or_else(|| "not used".to_owned()),
+                })
             })
             .filter(|difference| difference.value != difference.reference);
         Ok(differences.collect())

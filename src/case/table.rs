@@ -1,10 +1,13 @@
 //! The option table: every option of ours, declared once.
 //!
-//! To add an option: an entry here, a field in `model.rs` with the line that reads it, and
+//! Constants of hardening laws are declared with their laws, in `src/material/hardening/`.
+//! To add another option: an entry here, a field in `model.rs` with the line that reads it, and
 //! `UPDATE_DOCS=1 cargo test --test case_docs` for docs/options.md.
 
 use std::ops::Bound;
+use std::sync::LazyLock;
 
+use super::hardening::{self, Law};
 use super::kind::{Choice, Flag, Integer, List, Path, Real};
 use super::kind_resuming::{Restarting, WallTime};
 use super::model::Dynamics;
@@ -18,8 +21,12 @@ pub(crate) const BENCHMARK_TABLE: &str = "benchmark";
 macro_rules! option_table {
     ($($option:ident: $kind:ty { $($field:tt)* })*) => {
         $(pub(crate) static $option: Opt<$kind> = Opt { $($field)* };)*
-        /// Every option, in the order of the listings.
-        pub(crate) static TABLE: &[&dyn Described] = &[$(&$option),*];
+        /// Every option, in the order of the listings: those below, then the constants of the hardening laws.
+        pub(crate) static TABLE: LazyLock<Vec<&'static dyn Described>> = LazyLock::new(|| {
+            let mut options: Vec<&'static dyn Described> = vec![$(&$option),*];
+            options.extend(hardening::constants().map(|constant| constant as &dyn Described));
+            options
+        });
     };
 }
 
@@ -83,7 +90,7 @@ option_table! {
     }
     YOUNG_MODULUS: Real {
         name: "young_modulus", unit: "MPa", default: "70500", group: Group::Material, kind: Real::positive(1e8),
-        meaning: "Young's modulus; the first point of the hardening table must lie on this elastic line.",
+        meaning: "Young's modulus; the first point of a hardening table must lie on this elastic line.",
         value: |case| case.material.young_modulus,
     }
     POISSON_RATIO: Real {
@@ -97,10 +104,16 @@ option_table! {
         meaning: "Density; used with -dynamics slow.",
         value: |case| case.material.density,
     }
+    HARDENING: Law {
+        name: "hardening", unit: "", default: "table", group: Group::Material, kind: Law,
+        meaning: "Hardening law: the flow stress sigma against the equivalent plastic strain p. A law's constants begin with \
+                  its name; docs/theory.md has the formulas.",
+        value: |case| case.material.hardening_law,
+    }
     HARDENING_FILE: Path {
         name: "hardening_file", unit: "", default: BENCHMARK_TABLE, group: Group::Material, kind: Path,
-        meaning: "Table of total logarithmic strain and true stress in MPa; the word benchmark means the benchmark's own \
-                  table, which is part of the program.",
+        meaning: "With -hardening table: table of total logarithmic strain and true stress in MPa; the word benchmark \
+                  means the benchmark's own table, which is part of the program.",
         value: |case| case.material.hardening_file.clone(),
     }
     FRICTION_COEFFICIENT: Real {

@@ -12,6 +12,7 @@
 //! the function that is minimised, so the tangent stays exact and symmetric.
 
 use crate::element::{EDGE_SHAPE_CURVATURES, edge_shape, edge_shape_slopes};
+use crate::plane::{Vector, interpolate};
 use crate::tool::{Distance, Profile};
 
 /// An edge fits a tool when the radius of their relative curvature is beyond this, mm: then its middle
@@ -28,7 +29,7 @@ const SAME_POSITION: f64 = 1e-14;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Closest {
     pub xi: f64,
-    pub x: [f64; 2],
+    pub x: Vector,
     /// Distance there; its value is φ*.
     pub distance: Distance,
     /// How the point moves, unless it is held at an end.
@@ -41,7 +42,7 @@ pub struct Drift {
     /// Derivative of the shape functions by ξ.
     pub shape_slope: [f64; 3],
     /// Derivative of the position by ξ, mm.
-    pub x_slope: [f64; 2],
+    pub x_slope: Vector,
     /// Derivative of ξ by the nodes' coordinates, 1/mm.
     pub by_u: [f64; 6],
     /// Second derivative of the minimised function by ξ, mm.
@@ -50,32 +51,28 @@ pub struct Drift {
 
 /// What is minimised, with its first two derivatives by ξ.
 struct Valley {
-    x: [f64; 2],
+    x: Vector,
     distance: Distance,
-    x_slope: [f64; 2],
+    x_slope: Vector,
     value: f64,
     slope: f64,
     curvature: f64,
 }
 
-fn sum(weights: [f64; 3], nodes: &[[f64; 2]; 3]) -> [f64; 2] {
-    [0, 1].map(|k| (0..3).map(|a| weights[a] * nodes[a][k]).sum())
-}
-
-fn valley(nodes: &[[f64; 2]; 3], tool: &Profile, shift: [f64; 2], xi: f64, kappa: f64) -> Valley {
-    let x = sum(edge_shape(xi), nodes);
-    let x_slope = sum(edge_shape_slopes(xi), nodes);
-    let x_curvature = sum(EDGE_SHAPE_CURVATURES, nodes);
+fn valley(nodes: &[Vector; 3], tool: &Profile, shift: Vector, xi: f64, kappa: f64) -> Valley {
+    let x = interpolate(edge_shape(xi), nodes);
+    let x_slope = interpolate(edge_shape_slopes(xi), nodes);
+    let x_curvature = interpolate(EDGE_SHAPE_CURVATURES, nodes);
     let distance = tool.distance([x[0] - shift[0], x[1] - shift[1]]);
-    let g = distance.gradient;
-    let h = times(&distance.hessian, x_slope);
+    let normal = distance.gradient;
+    let turned = distance.hessian.times(x_slope);
     Valley {
         value: distance.value + 0.5 * kappa * xi * xi,
-        slope: g[0] * x_slope[0] + g[1] * x_slope[1] + kappa * xi,
-        curvature: h[0] * x_slope[0]
-            + h[1] * x_slope[1]
-            + g[0] * x_curvature[0]
-            + g[1] * x_curvature[1]
+        slope: normal[0] * x_slope[0] + normal[1] * x_slope[1] + kappa * xi,
+        curvature: turned[0] * x_slope[0]
+            + turned[1] * x_slope[1]
+            + normal[0] * x_curvature[0]
+            + normal[1] * x_curvature[1]
             + kappa,
         x,
         distance,
@@ -83,22 +80,9 @@ fn valley(nodes: &[[f64; 2]; 3], tool: &Profile, shift: [f64; 2], xi: f64, kappa
     }
 }
 
-/// A symmetric matrix (xx, xy, yy) times a vector.
-pub(super) fn times(matrix: &[f64; 3], v: [f64; 2]) -> [f64; 2] {
-    [
-        matrix[0] * v[0] + matrix[1] * v[1],
-        matrix[1] * v[0] + matrix[2] * v[1],
-    ]
-}
-
 /// The closest point of the edge with the given nodes, `length` (mm) long at first, to the tool moved
 /// by `shift` (mm).
-pub(super) fn closest(
-    nodes: &[[f64; 2]; 3],
-    tool: &Profile,
-    shift: [f64; 2],
-    length: f64,
-) -> Closest {
+pub(super) fn closest(nodes: &[Vector; 3], tool: &Profile, shift: Vector, length: f64) -> Closest {
     let kappa = 0.25 * length * length / FIT_RADIUS;
     let at = |xi: f64| valley(nodes, tool, shift, xi, kappa);
     let position = |i: usize| 2.0 * i as f64 / PIECES as f64 - 1.0;
@@ -137,10 +121,10 @@ pub(super) fn closest(
     let held = (xi <= -1.0 && here.slope >= 0.0) || (xi >= 1.0 && here.slope <= 0.0);
     let shape = edge_shape(xi);
     let shape_slope = edge_shape_slopes(xi);
-    let pulled = times(&here.distance.hessian, here.x_slope);
+    let turned = here.distance.hessian.times(here.x_slope);
     let drift = (!held && here.curvature > 0.0).then(|| Drift {
         by_u: std::array::from_fn(|i| {
-            let by_x = shape[i / 2] * pulled[i % 2];
+            let by_x = shape[i / 2] * turned[i % 2];
             let by_slope = shape_slope[i / 2] * here.distance.gradient[i % 2];
             -(by_x + by_slope) / here.curvature
         }),

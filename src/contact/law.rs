@@ -5,30 +5,19 @@
 //!
 //! ```text
 //! equilibrium        F_u -= λ ∇φ N_a
-//! closure            F_λ  = φ - g + ε λ          = 0
+//! closure            F_λ  = φ - g + C λ          = 0
 //! complementarity    F_g  = λ - c (φ - g)        ⟂   g >= 0
 //! ```
 //!
 //! On the reduced set of a semismooth Newton method for variational inequalities this is the
 //! primal-dual active set method (Hintermüller, Ito, Kunisch 2003, SIAM J. Optim. 13, 865-888): an
-//! inactive point has λ = 0, an active one φ + ε λ = 0. λ has no bound: its negative trial value is
-//! what releases a point.
-//!
-//! Friction is Coulomb's with an elastic slip that is remembered from step to step: with s the arc
-//! length of the foot point along the tool, in the tool's frame, and the index n for the last
-//! accepted step,
-//!
-//! ```text
-//! traction   λ_t = clamp( λ_tn - (s - s_n) / ε_t , -μ λ, μ λ )        F_u -= λ_t ∇s N_a
-//! ```
-//!
-//! which is the return map of perfect plasticity (Simo and Laursen 1992, Comput. Struct. 42, 97-116).
-//! The memory matters: without it the sticking traction vanishes as a step is cut, and cutting does
-//! not lead back to the last accepted state. λ_t is a function of the other unknowns, so the cone
-//! holds exactly at every iterate.
+//! inactive point has λ = 0, an active one φ + C λ = 0, where C is the compliance of the surface. λ has no bound: its
+//! negative trial value is what releases a point.
 
-use super::closest::{Drift, closest, times};
+use super::closest::{Drift, closest};
+use super::{ContactState, Friction, FrictionState, Traction};
 use crate::element::edge_shape;
+use crate::plane::{Vector, dot, interpolate};
 use crate::tool::{Distance, Profile};
 
 /// Weight c of the gap in the complementarity row. It must be small: release is decided by the sign
@@ -37,41 +26,6 @@ use crate::tool::{Distance, Profile};
 /// real force and releases points that carry the load.
 const COMPLEMENTARITY_WEIGHT: f64 = 1e-4;
 
-/// Multipliers up to this size are rounding, not contact, mm.
-const NO_CONTACT: f64 = 1e-13;
-
-/// Coulomb friction with elastic slip.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Friction {
-    /// Coefficient of friction μ.
-    pub coefficient: f64,
-    /// Elastic slip for a unit traction, ε_t, as `give` of [`ContactLaw`].
-    pub give: f64,
-}
-
-/// What a contact point remembers of the last accepted step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FrictionState {
-    /// Friction force along the tool divided by Young's modulus, mm.
-    pub traction: f64,
-    /// Arc length of the foot point in the tool's frame, mm.
-    pub arc_length: f64,
-    /// The edge's nodes in the tool's frame, mm: a moving point has no past of its own, but the point of
-    /// the sheet where it is now has one.
-    pub nodes: [[f64; 2]; 3],
-}
-
-/// Friction of a point and its slopes.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Traction {
-    /// Force on the sheet along increasing arc length divided by Young's modulus, mm.
-    pub value: f64,
-    /// Derivative by the arc length.
-    pub by_arc_length: f64,
-    /// Derivative by the multiplier.
-    pub by_multiplier: f64,
-}
-
 /// Constants of a contact point.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactLaw {
@@ -79,9 +33,9 @@ pub struct ContactLaw {
     pub shape: [f64; 3],
     /// Length of the edge (mm) if the point moves along it, to where the edge is closest to the tool.
     pub moves_on: Option<f64>,
-    /// Give of the surface for a unit multiplier, ε = compliance · E / (weight · length):
+    /// Compliance C of the surface for a unit multiplier, that of the model (mm/MPa) · E / (weight · length):
     /// millimetres per millimetre.
-    pub give: f64,
+    pub compliance: f64,
     /// Friction, if there is any.
     pub friction: Option<Friction>,
 }
@@ -90,7 +44,7 @@ pub struct ContactLaw {
 #[derive(Clone, Copy, Debug)]
 pub struct PointPosition {
     /// Current position, mm.
-    pub x: [f64; 2],
+    pub x: Vector,
     /// Distance to the tool.
     pub distance: Distance,
     /// Edge shape functions at the point.
@@ -122,10 +76,10 @@ pub struct ContactTangent {
     pub force_u: [[f64; 6]; 6],
     /// Equilibrium by multiplier.
     pub force_multiplier: [f64; 6],
-    /// Closure by displacement; by multiplier it is `give`, by gap -1.
+    /// Closure by displacement.
     pub closure_u: [f64; 6],
-    /// Closure by multiplier.
-    pub closure_multiplier: f64,
+    /// Closure by multiplier: the compliance of [`ContactLaw`].
+    pub compliance: f64,
     /// Closure by gap.
     pub closure_gap: f64,
     /// Complementarity by displacement.
@@ -140,15 +94,15 @@ impl ContactLaw {
     /// Position of the point and its distance to `tool`, whose points are moved by `shift` (mm).
     pub fn position(
         &self,
-        nodes: &[[f64; 2]; 3],
+        nodes: &[Vector; 3],
         tool: &Profile,
-        shift: [f64; 2],
+        shift: Vector,
         state: &FrictionState,
     ) -> PointPosition {
         if let Some(length) = self.moves_on {
             return self.moving_position(nodes, tool, shift, state, length);
         }
-        let x = point(self.shape, nodes);
+        let x = interpolate(self.shape, nodes);
         let distance = tool.distance([x[0] - shift[0], x[1] - shift[1]]);
         PointPosition {
             x,
@@ -162,19 +116,19 @@ impl ContactLaw {
 
     fn moving_position(
         &self,
-        nodes: &[[f64; 2]; 3],
+        nodes: &[Vector; 3],
         tool: &Profile,
-        shift: [f64; 2],
+        shift: Vector,
         state: &FrictionState,
         length: f64,
     ) -> PointPosition {
         let found = closest(nodes, tool, shift, length);
         let (mut slip, mut slip_slope) = (0.0, 0.0);
         if self.friction.is_some() {
-            let before = tool.distance(point(edge_shape(found.xi), &state.nodes));
+            let before = tool.distance(interpolate(edge_shape(found.xi), &state.nodes));
             slip = found.distance.arc_length - before.arc_length;
             if let Some(drift) = found.drift {
-                let x_slope_before = point(drift.shape_slope, &state.nodes);
+                let x_slope_before = interpolate(drift.shape_slope, &state.nodes);
                 slip_slope = dot(found.distance.arc_gradient, drift.x_slope)
                     - dot(before.arc_gradient, x_slope_before);
             }
@@ -196,24 +150,23 @@ impl ContactLaw {
         multiplier: f64,
         state: &FrictionState,
     ) -> Traction {
-        let Some(friction) = self.friction.filter(|_| multiplier > NO_CONTACT) else {
-            return Traction::default();
-        };
-        let trial = state.traction - position.slip / friction.give;
-        let limit = friction.coefficient * multiplier;
-        if trial.abs() <= limit {
-            Traction {
-                value: trial,
-                by_arc_length: -1.0 / friction.give,
-                by_multiplier: 0.0,
-            }
-        } else {
-            Traction {
-                value: limit.copysign(trial),
-                by_arc_length: 0.0,
-                by_multiplier: friction.coefficient.copysign(trial),
-            }
+        Traction::of(self.friction, multiplier, position.slip, state)
+    }
+
+    /// State of the point after an accepted step, at its multiplier and gap (mm), with the committed friction. During a
+    /// solve [`Traction::state_at`] says it.
+    pub fn committed_state(
+        &self,
+        multiplier: f64,
+        gap: f64,
+        committed: &FrictionState,
+    ) -> ContactState {
+        if gap > 0.0 || multiplier <= 0.0 {
+            return ContactState::Open;
         }
+        self.friction.map_or(ContactState::Stick, |friction| {
+            friction.committed_state(multiplier, committed)
+        })
     }
 
     /// Residual rows at multiplier and gap (mm).
@@ -225,13 +178,13 @@ impl ContactLaw {
         traction: &Traction,
     ) -> ContactRows {
         let (distance, shape) = (&position.distance, &position.shape);
-        let pull: [f64; 2] = std::array::from_fn(|k| {
+        let load: Vector = std::array::from_fn(|k| {
             multiplier * distance.gradient[k] + traction.value * distance.arc_gradient[k]
         });
-        let force = std::array::from_fn(|i| -shape[i / 2] * pull[i % 2]);
+        let force = std::array::from_fn(|i| -shape[i / 2] * load[i % 2]);
         ContactRows {
             force,
-            closure: distance.value - gap + self.give * multiplier,
+            closure: distance.value - gap + self.compliance * multiplier,
             complementarity: multiplier - COMPLEMENTARITY_WEIGHT * (distance.value - gap),
         }
     }
@@ -245,9 +198,10 @@ impl ContactLaw {
     ) -> ContactTangent {
         let (distance, shape) = (&position.distance, &position.shape);
         let (normal, along) = (&distance.gradient, &distance.arc_gradient);
+        let (hessian, arc_hessian) = (distance.hessian.rows(), distance.arc_hessian.rows());
         let stiffness = |i: usize, j: usize| {
-            multiplier * distance.hessian[i + j]
-                + traction.value * distance.arc_hessian[i + j]
+            multiplier * hessian[i][j]
+                + traction.value * arc_hessian[i][j]
                 + traction.by_arc_length * along[i] * along[j]
         };
         let slope: [f64; 6] = std::array::from_fn(|i| shape[i / 2] * normal[i % 2]);
@@ -263,7 +217,7 @@ impl ContactLaw {
                 -slope[i] - shape[i / 2] * traction.by_multiplier * along[i % 2]
             }),
             closure_u: slope,
-            closure_multiplier: self.give,
+            compliance: self.compliance,
             closure_gap: -1.0,
             complementarity_u: slope.map(|s| -COMPLEMENTARITY_WEIGHT * s),
             complementarity_multiplier: 1.0,
@@ -282,7 +236,7 @@ fn add_drift(
     traction: &Traction,
 ) {
     let distance = &position.distance;
-    let turned = times(&distance.arc_hessian, drift.x_slope);
+    let turned = distance.arc_hessian.times(drift.x_slope);
     for (i, row) in force_u.iter_mut().enumerate() {
         let (n, slope, along) = (
             position.shape[i / 2],
@@ -296,14 +250,6 @@ fn add_drift(
             *entry += factor * by_u;
         }
     }
-}
-
-fn point(weights: [f64; 3], nodes: &[[f64; 2]; 3]) -> [f64; 2] {
-    [0, 1].map(|k| (0..3).map(|a| weights[a] * nodes[a][k]).sum())
-}
-
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
 }
 
 #[cfg(test)]
@@ -326,11 +272,11 @@ mod tests {
     fn tangent_agrees(tool: &Profile, slip: Option<f64>, moves: bool) {
         let law = ContactLaw {
             shape: crate::element::edge_shape(0.3),
-            give: 12.0,
+            compliance: 12.0,
             moves_on: moves.then_some(0.8),
             friction: slip.map(|_| Friction {
                 coefficient: 0.2,
-                give: 120.0,
+                compliance: 120.0,
             }),
         };
         // Bent less than the shoulder, which it touches near its middle.
@@ -347,7 +293,7 @@ mod tests {
                 [x - along[0] + 0.01 * (x - 26.4), y - along[1]]
             }),
         };
-        let rows = |nodes: &[[f64; 2]; 3], multiplier: f64, gap: f64| {
+        let rows = |nodes: &[Vector; 3], multiplier: f64, gap: f64| {
             let position = law.position(nodes, tool, [0.0; 2], &state);
             let traction = law.traction(&position, multiplier, &state);
             law.rows(&position, multiplier, gap, &traction)
@@ -383,10 +329,7 @@ mod tests {
                 (up.force[i] - down.force[i]) / (2.0 * h),
             );
         }
-        close(
-            exact.closure_multiplier,
-            (up.closure - down.closure) / (2.0 * h),
-        );
+        close(exact.compliance, (up.closure - down.closure) / (2.0 * h));
         let slope = (up.complementarity - down.complementarity) / (2.0 * h);
         close(exact.complementarity_multiplier, slope);
         let (up, down) = (

@@ -3,13 +3,13 @@
 //! Never: other points, the tools' motion in time, PETSc or MPI.
 
 mod closest;
+mod friction;
 mod law;
 mod rule;
 mod state;
 
 pub use closest::Drift;
-pub use law::{
-    ContactLaw, ContactRows, ContactTangent, Friction, FrictionState, PointPosition, Traction,
-};
+pub use friction::{Friction, FrictionState, Traction};
+pub use law::{ContactLaw, ContactRows, ContactTangent, PointPosition};
 pub use rule::{ContactLocation, ContactRule, ContactSample};
 pub use state::ContactState;

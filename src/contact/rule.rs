@@ -51,7 +51,7 @@ impl ContactRule {
     ///
     /// A node stands for the length that a uniform pressure's consistent force gives it (1/6, 4/6 and
     /// 1/6 of an edge, corners summed over both edges): so nodal contact, too, passes the contact
-    /// patch test, with the same give under the same pressure everywhere.
+    /// patch test, with the same compliance everywhere.
     pub fn samples(&self, first: bool, last: bool) -> Vec<ContactSample> {
         let at = |xi: f64, weight: f64| ContactSample {
             shape: edge_shape(xi),

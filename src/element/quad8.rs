@@ -1,7 +1,8 @@
 //! The eight-node element in plane strain, total displacements, per millimetre of width.
 
 use super::{Quadrature, gauss_points, shape, shape_gradients};
-use crate::material::{PointState, Response, TurnedOver, VonMises};
+use crate::material::{DeformationError, PointState, Response, VonMises};
+use crate::plane::{Matrix, PlaneTensor, Vector, determinant};
 
 /// Degrees of freedom of an element: x and y of each node, node by node.
 const DOFS: usize = 16;
@@ -11,7 +12,7 @@ const DOFS: usize = 16;
 pub struct Quad8 {
     /// Per Gauss point: gradients of the shape functions with respect to X (1/mm), and the weight
     /// times the Jacobian determinant (mm², that is mm³ per millimetre of width).
-    points: Vec<([[f64; 2]; 8], f64)>,
+    points: Vec<([Vector; 8], f64)>,
     /// Consistent mass between nodes for unit density, mm².
     mass: [[f64; 8]; 8],
 }
@@ -25,19 +26,19 @@ pub struct ElementForce {
     pub stiffness: [[f64; DOFS]; DOFS],
 }
 
-/// A Gauss point that cannot be evaluated.
-#[derive(Clone, Copy, Debug, thiserror::Error)]
+/// A Gauss point whose return map failed.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("Gauss point {point}: {cause}")]
-pub struct SinglePointFailure {
+pub struct GaussPointFailure {
     /// Which Gauss point of the element.
     pub point: usize,
     /// Why.
-    pub cause: TurnedOver,
+    pub cause: DeformationError,
 }
 
 impl Quad8 {
     /// From the reference coordinates of the nodes (mm).
-    pub fn new(nodes: &[[f64; 2]; 8], quadrature: Quadrature) -> Self {
+    pub fn new(nodes: &[Vector; 8], quadrature: Quadrature) -> Self {
         let points = gauss_points(quadrature)
             .into_iter()
             .map(|(xi, weight)| {
@@ -74,15 +75,15 @@ impl Quad8 {
     pub fn point_response(
         &self,
         point: usize,
-        u: &[[f64; 2]; 8],
+        u: &[Vector; 8],
         material: &VonMises,
         state: &PointState,
-    ) -> Result<(Response, [[f64; 2]; 2], f64), SinglePointFailure> {
+    ) -> Result<(Response, Matrix, f64), GaussPointFailure> {
         let (gradients, volume) = &self.points[point];
         let f = deformation_gradient(gradients, u);
         let response = material
             .respond(&f, state)
-            .map_err(|cause| SinglePointFailure { point, cause })?;
+            .map_err(|cause| GaussPointFailure { point, cause })?;
         Ok((response, f, *volume))
     }
 
@@ -90,12 +91,12 @@ impl Quad8 {
     /// `with_stiffness`. States are not changed.
     pub fn internal_force(
         &self,
-        u: &[[f64; 2]; 8],
+        u: &[Vector; 8],
         material: &VonMises,
         states: &[PointState],
         with_stiffness: bool,
         out: &mut ElementForce,
-    ) -> Result<(), SinglePointFailure> {
+    ) -> Result<(), GaussPointFailure> {
         out.force = [0.0; DOFS];
         if with_stiffness {
             out.stiffness = [[0.0; DOFS]; DOFS];
@@ -103,7 +104,7 @@ impl Quad8 {
         for (point, state) in states.iter().enumerate() {
             let (response, f, volume) = self.point_response(point, u, material, state)?;
             let gradients = spatial_gradients(&self.points[point].0, &f);
-            let [xx, xy, yy, _] = response.kirchhoff;
+            let PlaneTensor { xx, yy, xy, .. } = response.kirchhoff;
             // Traction of each node's gradient, τ · ∇N.
             let traction = gradients.map(|g| {
                 [
@@ -142,16 +143,16 @@ impl ElementForce {
 
 /// Adds material and geometric stiffness of one Gauss point to the upper block triangle.
 fn add_stiffness(
-    gradients: &[[f64; 2]; 8],
+    gradients: &[Vector; 8],
     tangent: &[[f64; 3]; 3],
     volume: f64,
-    traction: &[[f64; 2]; 8],
+    traction: &[Vector; 8],
     stiffness: &mut [[f64; DOFS]; DOFS],
 ) {
     for b in 0..8 {
         let [bx, by] = gradients[b];
         // Stress rates (xx, yy, xy) for unit velocities of node b in x and y.
-        let rate: [[f64; 2]; 3] = tangent.map(|row| {
+        let rate: [Vector; 3] = tangent.map(|row| {
             [
                 volume * (row[0] * bx + row[2] * by),
                 volume * (row[1] * by + row[2] * bx),
@@ -181,7 +182,7 @@ fn mirror_upper(stiffness: &mut [[f64; DOFS]; DOFS]) {
 }
 
 /// Gradients of the shape functions with respect to X, and the Jacobian determinant.
-fn reference_gradients(nodes: &[[f64; 2]; 8], xi: [f64; 2]) -> ([[f64; 2]; 8], f64) {
+fn reference_gradients(nodes: &[Vector; 8], xi: [f64; 2]) -> ([Vector; 8], f64) {
     let local = shape_gradients(xi);
     // jacobian[i][j] = dX_i / dξ_j
     let mut jacobian = [[0.0; 2]; 2];
@@ -197,12 +198,12 @@ fn reference_gradients(nodes: &[[f64; 2]; 8], xi: [f64; 2]) -> ([[f64; 2]; 8], f
 }
 
 /// Gradients with respect to x from those with respect to X.
-fn spatial_gradients(reference: &[[f64; 2]; 8], f: &[[f64; 2]; 2]) -> [[f64; 2]; 8] {
+fn spatial_gradients(reference: &[Vector; 8], f: &Matrix) -> [Vector; 8] {
     transform(reference, f, determinant(f))
 }
 
 /// Each gradient times the inverse of `map`.
-fn transform(gradients: &[[f64; 2]; 8], map: &[[f64; 2]; 2], determinant: f64) -> [[f64; 2]; 8] {
+fn transform(gradients: &[Vector; 8], map: &Matrix, determinant: f64) -> [Vector; 8] {
     gradients.map(|g| {
         [
             (g[0] * map[1][1] - g[1] * map[1][0]) / determinant,
@@ -211,12 +212,8 @@ fn transform(gradients: &[[f64; 2]; 8], map: &[[f64; 2]; 2], determinant: f64) -
     })
 }
 
-fn determinant(m: &[[f64; 2]; 2]) -> f64 {
-    m[0][0] * m[1][1] - m[0][1] * m[1][0]
-}
-
 /// F = I + Σ u_a ⊗ ∇N_a.
-fn deformation_gradient(gradients: &[[f64; 2]; 8], u: &[[f64; 2]; 8]) -> [[f64; 2]; 2] {
+fn deformation_gradient(gradients: &[Vector; 8], u: &[Vector; 8]) -> Matrix {
     let mut f = [[1.0, 0.0], [0.0, 1.0]];
     for (u, g) in u.iter().zip(gradients) {
         for i in 0..2 {

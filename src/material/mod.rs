@@ -3,8 +3,8 @@
 //! Never: meshes, unknowns, PETSc or MPI; of files only the hardening table is read.
 
 pub mod hardening;
-mod hardening_table;
+mod principal;
 mod von_mises;
 
 pub use hardening::Hardening;
-pub use von_mises::{PointState, Response, TurnedOver, VonMises};
+pub use von_mises::{DeformationError, PointState, Response, VonMises};

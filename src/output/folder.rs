@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 use mpi::traits::Communicator;
 
-use super::{OutputError, agreement::agree, checkpoint};
+use super::checkpoint;
+use super::error::{OutputError, agree};
 
 /// The table of steps.
 pub(crate) const HISTORY: &str = "history.csv";
@@ -17,7 +18,16 @@ pub(crate) const TOOLS: &str = "tools.vtkhdf";
 /// The contact points.
 pub(crate) const CONTACT: &str = "contact.vtkhdf";
 /// How the run ended.
-const SUMMARY: &str = "summary.json";
+pub(super) const SUMMARY: &str = "summary.json";
+/// The page about the run.
+const REPORT: &str = "report.html";
+/// Force against stroke.
+const FORCE: &str = "force.svg";
+/// The model, drawn by a dry run.
+const MODEL: &str = "model.svg";
+
+/// What every run writes under the same name. All of it must be replaceable.
+const FILES: [&str; 7] = [HISTORY, FIELDS, TOOLS, CONTACT, SUMMARY, REPORT, FORCE];
 
 /// A folder that exists and takes files, as far as rank 0 could check.
 #[derive(Debug, Clone)]
@@ -96,29 +106,24 @@ impl OutputDir {
 
     /// `report.html`, see [`super::Report`].
     pub fn report(&self) -> PathBuf {
-        self.file("report.html")
+        self.file(REPORT)
     }
 
     /// `force.svg`, see [`super::plot::force`].
     pub fn force_figure(&self) -> PathBuf {
-        self.file("force.svg")
+        self.file(FORCE)
     }
 
-    /// `shape.svg`, see [`super::plot::shape`].
-    pub fn shape_figure(&self) -> PathBuf {
-        self.file("shape.svg")
+    /// `shape-*.svg` with the name of an instant in it, see [`super::plot::shape`].
+    pub fn shape_figure(&self, label: &str) -> PathBuf {
+        self.file(&format!("shape-{}.svg", label.replace(' ', "-")))
+    }
+
+    /// `model.svg`, see [`super::plot::model`].
+    pub fn model_figure(&self) -> PathBuf {
+        self.file(MODEL)
     }
 }
-
-/// What a run writes; names with a number in them are left out.
-const FILES: [&str; 6] = [
-    "history.csv",
-    "fields.vtkhdf",
-    "tools.vtkhdf",
-    "contact.vtkhdf",
-    "summary.json",
-    "force.svg",
-];
 
 /// The check itself, without MPI.
 fn prepare(path: &Path) -> Result<(), OutputError> {

@@ -1,4 +1,4 @@
-//! What the terminal shows while a run goes on: a header, one line per accepted step, a banner at the end.
+//! What the terminal shows while a run goes on: a header, and one line per accepted step.
 
 use std::collections::VecDeque;
 use std::io::Write;
@@ -7,9 +7,7 @@ use std::time::{Duration, Instant};
 use super::StepRecord;
 use crate::tool::PunchMotion;
 
-/// Width of the banners, characters.
-const WIDTH: usize = 80;
-/// Steps whose speed tells how long the rest will take.
+/// Steps whose speed is that of the rest.
 const RECENT: usize = 20;
 
 /// The header above the step lines, without a line break.
@@ -20,8 +18,8 @@ pub fn header() -> String {
     )
 }
 
-/// The line of one accepted step, without a line break: `done` is the share of the punch's way, `left` the time the rest
-/// will take if that is known.
+/// The line of one accepted step, without a line break: `done` is the share of the punch's travel, `left` the time the
+/// rest will take if that is known.
 pub fn step_line(record: &StepRecord, done: f64, left: Option<Duration>) -> String {
     let share = 100.0 * done;
     let left = left.map_or_else(String::new, clock);
@@ -52,7 +50,7 @@ fn clock(time: Duration) -> String {
     }
 }
 
-/// How much of the punch's way is done, and how long the rest will take at the speed of the last steps. Steps shorten
+/// How much of the punch's travel is done, and how long the rest will take at the speed of the last steps. Steps shorten
 /// where the solution is hard, so it is an estimate and no promise.
 struct Progress {
     motion: PunchMotion,
@@ -62,7 +60,7 @@ struct Progress {
 
 impl Progress {
     fn whole(&self) -> f64 {
-        self.motion.way(self.motion.end())
+        self.motion.travel(self.motion.end())
     }
 
     /// Takes a step that ended at `t` (ms), now.
@@ -70,13 +68,13 @@ impl Progress {
         if self.recent.len() > RECENT {
             self.recent.pop_front();
         }
-        self.recent.push_back((now, self.motion.way(t)));
+        self.recent.push_back((now, self.motion.travel(t)));
     }
 
     fn done(&self) -> f64 {
         self.recent
             .back()
-            .map_or(0.0, |(_, way)| way / self.whole())
+            .map_or(0.0, |(_, travel)| travel / self.whole())
     }
 
     fn left(&self) -> Option<Duration> {
@@ -84,80 +82,6 @@ impl Progress {
         let speed = (to - from) / end.duration_since(*start).as_secs_f64();
         Duration::try_from_secs_f64((self.whole() - to) / speed).ok()
     }
-}
-
-/// The banner of a run that computed everything asked for. `facts` are shown as aligned pairs. Ends with a line break.
-pub fn finished_banner(title: &str, facts: &[(&str, String)]) -> String {
-    banner('=', &format!("FINISHED: {title}"), facts)
-}
-
-/// The banner of a run that did not: `place` says where (time, stroke, step), `reason` why. It cannot be mistaken for
-/// the other one. Ends with a line break.
-pub fn failed_banner(place: &str, reason: &str, facts: &[(&str, String)]) -> String {
-    let mut all = vec![("where", place.to_owned()), ("why", reason.to_owned())];
-    all.extend(facts.iter().cloned());
-    banner('#', "FAILED: the run did not finish", &all)
-}
-
-/// The banner of a run that was ended before its end, and can go on: `place` says where, `reason` why, `resume` how.
-/// Ends with a line break.
-pub fn interrupted_banner(
-    place: &str,
-    reason: &str,
-    resume: &str,
-    facts: &[(&str, String)],
-) -> String {
-    let mut all = vec![
-        ("where", place.to_owned()),
-        ("why", reason.to_owned()),
-        ("resume", resume.to_owned()),
-    ];
-    all.extend(facts.iter().cloned());
-    banner(
-        '~',
-        "INTERRUPTED: the run is not finished and can go on",
-        &all,
-    )
-}
-
-fn banner(frame: char, title: &str, facts: &[(&str, String)]) -> String {
-    let rule = frame.to_string().repeat(WIDTH);
-    let names = facts
-        .iter()
-        .map(|(name, _)| name.chars().count())
-        .max()
-        .unwrap_or(0);
-    let mut text = format!("{rule}\n{frame}  {title}\n");
-    for (name, value) in facts {
-        // The value keeps to its own column also where it takes several lines.
-        for (index, line) in wrap(value, WIDTH.saturating_sub(names + 6))
-            .iter()
-            .enumerate()
-        {
-            let name = if index == 0 { name } else { "" };
-            text.push_str(&format!("{frame}  {name:<names$}  {line}\n"));
-        }
-    }
-    text + &rule + "\n"
-}
-
-/// Breaks at spaces; a word longer than a line stays whole.
-fn wrap(text: &str, width: usize) -> Vec<String> {
-    let mut lines = Vec::new();
-    for paragraph in text.lines() {
-        let mut line = String::new();
-        for word in paragraph.split_whitespace() {
-            if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > width {
-                lines.push(std::mem::take(&mut line));
-            }
-            if !line.is_empty() {
-                line.push(' ');
-            }
-            line.push_str(word);
-        }
-        lines.push(line);
-    }
-    lines
 }
 
 /// Writes the lines above on rank 0 and nothing on the others.
@@ -240,7 +164,7 @@ mod tests {
     };
 
     #[test]
-    fn the_time_left_follows_the_way_and_not_the_time_of_the_motion() {
+    fn the_time_left_follows_the_travel_and_not_the_time_of_the_motion() {
         let start = Instant::now();
         let mut progress = Progress {
             motion: MOTION,
@@ -248,7 +172,7 @@ mod tests {
         };
         assert_eq!(progress.left(), None);
         progress.take(0.0, start);
-        // Half of the way down in 10 s: 14.25 of 31.35 mm.
+        // Half of the travel down in 10 s: 14.25 of 31.35 mm.
         progress.take(450.0, start + Duration::from_secs(10));
         assert!((progress.done() - 14.25 / 31.35).abs() < 1e-12);
         assert_eq!(clock(progress.left().unwrap()), "0:12");
@@ -267,24 +191,5 @@ mod tests {
         }
         assert_eq!(first.iter().filter(|&&byte| byte == b'\n').count(), 2);
         assert!(second.is_empty());
-    }
-
-    #[test]
-    fn a_failed_run_says_where_and_why_within_the_width() {
-        let reason = "Newton's iteration diverged 12 times in a row while the step shrank from 5 ms to 0.001 ms; \
-                      the last attempt ended with a residual of 3.2e-4 mm.";
-        let text = failed_banner("step 311, t = 612.3 ms, stroke 19.39 mm", reason, &[]);
-        assert!(
-            text.contains("FAILED")
-                && text.contains("where  step 311")
-                && text.contains("why    Newton's")
-        );
-        assert!(
-            text.lines()
-                .all(|line| line.starts_with('#') && line.chars().count() <= WIDTH),
-            "{text}"
-        );
-        let good = finished_banner("4 of 4 hold", &[("steps", "191".into())]);
-        assert!(good.contains("FINISHED: 4 of 4 hold") && !good.contains('#'));
     }
 }

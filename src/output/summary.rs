@@ -5,7 +5,9 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::{Diagnosis, OutputError, StepRecord, VerdictTable, atomic};
+use super::folder::SUMMARY;
+use super::record::{Badness, COLUMNS, Column};
+use super::{OutputError, StepRecord, VerdictTable, atomic};
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -19,9 +21,21 @@ pub enum Status {
     /// Stopped on request (signal, time limit); what came before is valid.
     #[serde(rename = "interrupted")]
     Interrupted,
-    /// Something else went wrong: input, files, memory.
-    #[serde(rename = "failed")]
-    Failed,
+}
+
+/// What is known about a run that did not finish.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct Diagnosis {
+    /// The last accepted step, its time and the depth of the punch.
+    pub place: String,
+    /// Why there is no further step, in a sentence or two.
+    pub cause: String,
+    /// What was seen in the last solve.
+    pub observed: Vec<String>,
+    /// The solves that were refused, the first and the last ones.
+    pub tried: Vec<String>,
+    /// What the user can do, the most promising first.
+    pub remedies: Vec<String>,
 }
 
 /// Counts over the whole run.
@@ -50,71 +64,39 @@ pub struct WorstValue {
     pub t_ms: f64,
 }
 
-/// One certificate: its column in the history, and how bad a record is (larger is worse).
-type Certificate = (&'static str, fn(&StepRecord) -> f64, fn(f64) -> f64);
-
-const CERTIFICATES: [Certificate; 7] = [
-    (
-        "max_penetration_mm",
-        |record| record.max_penetration_mm,
-        |value| value,
-    ),
-    (
-        "min_contact_force_N",
-        |record| record.min_contact_force_N,
-        |value| -value,
-    ),
-    (
-        "max_complementarity_mJ",
-        |record| record.max_complementarity_mJ,
-        f64::abs,
-    ),
-    ("energy_error", |record| record.energy_error, f64::abs),
-    ("balance_error", |record| record.balance_error, f64::abs),
-    ("cone_violation", |record| record.cone_violation, f64::abs),
-    (
-        "residual_norm_mm",
-        |record| record.residual_norm_mm,
-        f64::abs,
-    ),
-];
-
-/// Watches the certificates of every step and remembers where each was worst.
-#[derive(Debug, Clone, Default)]
-pub struct Certificates {
-    steps: u64,
-    worst: [Option<WorstValue>; CERTIFICATES.len()],
+/// The columns that are certificates, each with how bad a value is.
+fn certificates() -> impl Iterator<Item = (&'static Column, Badness)> {
+    COLUMNS
+        .iter()
+        .filter_map(|column| Some((column, column.certificate?)))
 }
 
-impl Certificates {
-    /// Looks at the next accepted step. A value that is not a number counts as the worst of all.
-    pub fn observe(&mut self, record: &StepRecord) {
-        self.steps += 1;
-        for (worst, (certificate, value, badness)) in self.worst.iter_mut().zip(CERTIFICATES) {
-            let value = value(record);
-            let how_bad = |value: f64| {
-                if value.is_nan() {
-                    f64::INFINITY
-                } else {
-                    badness(value)
-                }
-            };
-            let replaces = worst.is_none_or(|old| how_bad(value) > how_bad(old.value));
-            if replaces {
-                *worst = Some(WorstValue {
-                    certificate,
+/// The worst value of every certificate over the accepted steps, each with its step. A value that is not a number counts
+/// as the worst of all. Empty before the first step.
+pub fn worst_values(records: &[StepRecord]) -> Vec<WorstValue> {
+    let worst = |(column, badness): (&'static Column, Badness)| {
+        let how_bad = |value: f64| {
+            if value.is_nan() {
+                f64::INFINITY
+            } else {
+                badness(value)
+            }
+        };
+        let mut worst: Option<WorstValue> = None;
+        for (step, record) in (1..).zip(records) {
+            let value = (column.value)(record);
+            if worst.is_none_or(|old| how_bad(value) > how_bad(old.value)) {
+                worst = Some(WorstValue {
+                    certificate: column.name,
                     value,
-                    step: self.steps,
+                    step,
                     t_ms: record.t_ms,
                 });
             }
         }
-    }
-
-    /// The worst values so far; empty before the first step.
-    pub fn worst(&self) -> Vec<WorstValue> {
-        self.worst.iter().flatten().copied().collect()
-    }
+        worst
+    };
+    certificates().filter_map(worst).collect()
 }
 
 /// What made the result: enough to make it again.
@@ -167,7 +149,7 @@ pub struct Summary {
     pub counts: Counts,
     /// Tolerances by name, units in the names.
     pub tolerances: BTreeMap<String, f64>,
-    /// Worst certificate values, see [`Certificates::worst`].
+    /// Worst certificate values, see [`worst_values`].
     pub worst: Vec<WorstValue>,
     /// The comparison with the references.
     pub verdicts: VerdictTable,
@@ -178,6 +160,19 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// How the run ended, in a few words.
+    pub fn headline(&self) -> String {
+        match (self.status, self.verdicts.failures()) {
+            (Status::NotConverged, _) => "FAILED: the run did not finish".to_owned(),
+            (Status::Interrupted, _) => {
+                "INTERRUPTED: the run is not finished and can go on".to_owned()
+            }
+            (Status::Finished, 0) => "FINISHED: every verdict holds".to_owned(),
+            (Status::Finished, 1) => "FINISHED, but 1 verdict does not hold".to_owned(),
+            (Status::Finished, count) => format!("FINISHED, but {count} verdicts do not hold"),
+        }
+    }
+
     /// The JSON text, ending with a line break.
     ///
     /// # Errors
@@ -185,7 +180,7 @@ impl Summary {
     pub fn json(&self) -> Result<String, OutputError> {
         let text = serde_json::to_string_pretty(self);
         text.map(|text| text + "\n")
-            .map_err(|error| OutputError::write(Path::new("summary.json"), error))
+            .map_err(|error| OutputError::write(Path::new(SUMMARY), error))
     }
 
     /// Writes the summary: the file is there in full or not at all.
@@ -211,24 +206,24 @@ mod tests {
 
     #[test]
     fn the_worst_values_know_their_step() {
-        let mut certificates = Certificates::default();
-        certificates.observe(&StepRecord {
-            max_penetration_mm: 1e-9,
-            min_contact_force_N: 0.5,
-            ..record(1.0)
-        });
-        certificates.observe(&StepRecord {
-            energy_error: -2e-3,
-            min_contact_force_N: -0.1,
-            ..record(2.0)
-        });
-        certificates.observe(&StepRecord {
-            energy_error: 1e-3,
-            balance_error: f64::NAN,
-            ..record(3.0)
-        });
-        certificates.observe(&record(4.0));
-        let worst = certificates.worst();
+        let worst = worst_values(&[
+            StepRecord {
+                max_penetration_mm: 1e-9,
+                min_contact_force_N: 0.5,
+                ..record(1.0)
+            },
+            StepRecord {
+                energy_error: -2e-3,
+                min_contact_force_N: -0.1,
+                ..record(2.0)
+            },
+            StepRecord {
+                energy_error: 1e-3,
+                balance_error: f64::NAN,
+                ..record(3.0)
+            },
+            record(4.0),
+        ]);
         let at = |name: &str| {
             worst
                 .iter()
@@ -240,6 +235,7 @@ mod tests {
         assert_eq!(at("min_contact_force_N"), (-0.1, 2));
         assert_eq!(at("energy_error"), (-2e-3, 2));
         assert_eq!(at("balance_error").1, 3);
+        assert!(worst_values(&[]).is_empty());
     }
 
     #[test]
@@ -288,6 +284,7 @@ mod tests {
             },
         };
         let value: serde_json::Value = serde_json::from_str(&summary.json().unwrap()).unwrap();
+        assert_eq!(summary.headline(), "FAILED: the run did not finish");
         assert_eq!(value["status"], "not converged");
         assert_eq!(value["final"]["force_N"], 151.5);
         assert!(value["final"]["gap_A_mm"].is_null());

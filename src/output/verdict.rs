@@ -4,7 +4,7 @@ use std::fmt::{self, Write as _};
 
 use serde::Serialize;
 
-use super::number::number;
+use crate::text::number;
 
 /// How far the computed value may be from the reference.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -5,12 +5,15 @@ use std::io::stdout;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::{RunError, recorder};
+use super::error::RunError;
+use super::recorder;
+use super::step_size::landmarks;
 use crate::case::{Case, Dynamics};
 use crate::contact::ContactLocation;
 use crate::output::monitor::Monitor;
-use crate::output::{OutputDir, number, plot};
+use crate::output::{OutputDir, plot};
 use crate::system::{Problem, Share, System};
+use crate::text::number;
 
 /// Memory of a rank without any unknowns, alone and among others, and for n log2 n with n the unknowns it owns (the
 /// factors of a plane mesh grow so), bytes: fitted to the peaks of resident memory of short runs with 3 924, 9 882,
@@ -30,17 +33,17 @@ pub(super) fn describe(case: &Case, comm: &SimpleCommunicator) -> Result<(), Run
     if comm.rank() == 0 {
         let local = system.local();
         let (die, punch) = recorder::right_halves(local.problem());
-        plot::model(folder.file("model.svg"), case, &die, &punch)?;
+        plot::model(folder.model_figure(), case, &die, &punch)?;
     }
     let shares = system.shares();
     let mut text = String::from("dry run: the model, nothing is solved\n\n");
-    for (name, value) in facts(case, &system, &shares, &super::landmarks(case)?) {
+    for (name, value) in facts(case, &system, &shares, &landmarks(case)?) {
         text.push_str(&format!("{name:<12}  {value}\n"));
     }
     text.push_str(&table(&shares));
     text.push_str(&format!(
         "\nsketch        {}\n",
-        folder.file("model.svg").display()
+        folder.model_figure().display()
     ));
     Monitor::new(comm.rank(), stdout(), case.loading.motion()).show(&text);
     Ok(())
@@ -65,7 +68,6 @@ fn facts(
     let motion = loading.motion();
     let sum = |part: fn(&Share) -> usize| shares.iter().map(part).sum::<usize>();
     let yields = |p: f64| format!("{:.1}", material.hardening.yield_stress(p).0);
-    let (pieces, last) = material.hardening.pieces();
     let edge = sheet.half_length() / discretisation.nx as f64;
     let mut facts = vec![
         (
@@ -112,10 +114,8 @@ fn facts(
         (
             "hardening",
             format!(
-                "{}: {} pieces; yields at {} MPa, at {} after 5 %, {} after 20 %; with its last slope beyond a plastic \
-                 strain of {last:.3}",
-                material.hardening_file,
-                pieces,
+                "{}; yields at {} MPa, at {} after 5 %, {} after 20 %",
+                material.hardening_in_words(),
                 number(material.hardening.initial()),
                 yields(0.05),
                 yields(0.2)

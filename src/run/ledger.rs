@@ -1,30 +1,55 @@
-//! Adds up what a run spends and gains, and turns measures of a state into the row of a step.
+//! Adds up what a run spends and gains: counts, processor time, and the work of the punch.
+
+use std::time::Instant;
+
+use cpu_time::ProcessTime;
+use mpi::collective::SystemOperation;
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::CommunicatorCollectives;
 
 use crate::output::StepRecord;
+use crate::output::record::Step;
 use crate::system::Measures;
 
-/// Below this force (N) imbalance is measured against it instead of the force itself: at the first
-/// touch any residual would be large against nothing.
-pub(super) const LEAST_FORCE: f64 = 1.0;
+pub(super) use crate::output::record::LEAST_FORCE;
+pub use crate::output::record::StepEffort;
 
-/// How an accepted step came about.
-#[derive(Clone, Copy, Debug)]
-pub struct StepEffort {
-    /// Time at its end, ms.
-    pub t: f64,
-    /// Its length, ms.
-    pub dt: f64,
-    /// Depth of the punch at its end, mm.
-    pub depth: f64,
-    /// Newton iterations of the accepted attempt.
-    pub newton_iterations: u32,
-    /// Residual norm at its end, mm.
-    pub residual_norm: f64,
-    /// Attempts refused before.
-    pub refused_solves: u32,
+/// Work done over the run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Solves refused.
+    pub refused: u64,
+    /// Newton iterations of all solves; each is one linear solve.
+    pub newton: u64,
 }
 
-/// Sums over the run.
+/// Time of processors and on the clock that a run takes, with the runs it goes on from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spent {
+    start: Instant,
+    /// Of the runs before this one, s.
+    earlier: [f64; 2],
+}
+
+impl Spent {
+    /// The clock began at `start`; the runs before took `earlier` (s).
+    pub fn new(start: Instant, earlier: [f64; 2]) -> Self {
+        Self { start, earlier }
+    }
+
+    /// Time of all processors, and on the clock, s. Collective.
+    pub fn so_far(&self, comm: &SimpleCommunicator) -> [f64; 2] {
+        let mine = ProcessTime::now().as_duration().as_secs_f64();
+        let mut all = 0.0;
+        comm.all_reduce_into(&mine, &mut all, SystemOperation::sum());
+        let [processors, clock] = self.earlier;
+        [processors + all, clock + self.start.elapsed().as_secs_f64()]
+    }
+}
+
+/// The work of the punch, and what it is summed from.
 #[derive(Clone, Debug, Default)]
 pub struct Ledger {
     depth: f64,
@@ -58,44 +83,15 @@ impl Ledger {
     }
 
     /// The row of an accepted step. The punch's work is the trapezoidal sum of its force over its
-    /// way: second order in the step.
+    /// travel: second order in the step.
     pub fn record(&mut self, effort: &StepEffort, measures: &Measures) -> StepRecord {
         let force = measures.punch_force;
         self.external_work += 0.5 * (self.force + force) * (effort.depth - self.depth);
         (self.force, self.depth) = (force, effort.depth);
-        let held = measures.strain_energy
-            + measures.plastic_dissipation
-            + measures.contact_energy
-            + measures.kinetic_energy;
-        let imbalance = force - measures.die_force - measures.inertia;
-        let largest_force = force.abs().max(measures.die_force.abs()).max(LEAST_FORCE);
-        StepRecord {
-            t_ms: effort.t,
-            stroke_mm: effort.depth,
-            force_N: force,
-            dy_A_punch_mm: -effort.depth,
-            dy_A_sheet_mm: measures.point_a_displacement,
-            gap_A_mm: measures.point_a_gap,
-            angle_deg: measures.angle,
-            dt_ms: effort.dt,
-            newton_iterations: effort.newton_iterations,
-            active_points: measures.active_points as u32,
-            max_penetration_mm: measures.max_penetration,
-            min_contact_force_N: measures.min_contact_force,
-            kinetic_energy_mJ: measures.kinetic_energy,
-            strain_energy_mJ: measures.strain_energy,
-            plastic_dissipation_mJ: measures.plastic_dissipation,
-            contact_energy_mJ: measures.contact_energy,
-            external_work_mJ: self.external_work,
-            energy_error: (self.external_work - held) / self.external_work.abs().max(held),
-            die_force_N: measures.die_force,
-            inertia_N: measures.inertia,
-            balance_error: imbalance / largest_force,
-            cone_violation: measures.cone_violation,
-            angle_fit_residual_mm: measures.angle_fit_residual,
-            residual_norm_mm: effort.residual_norm,
-            refused_solves: effort.refused_solves,
-            max_complementarity_mJ: measures.max_complementarity,
-        }
+        StepRecord::of(&Step {
+            effort,
+            measures,
+            external_work: self.external_work,
+        })
     }
 }

@@ -1,6 +1,8 @@
 //! How long the next step is: from the iterations of the last one, and so that certain times are
 //! hit exactly.
 
+use crate::case::{self, Case, CaseError};
+
 /// Up to so many Newton iterations the step may grow.
 const EASY_ITERATIONS: usize = 14;
 /// Beyond so many it shrinks.
@@ -111,6 +113,34 @@ impl StepControl {
             self.wanted
         }
     }
+}
+
+/// Times to hit exactly: both ends, where reference values are compared, and where the user wants a row.
+pub(super) fn landmarks(case: &Case) -> Result<Vec<f64>, CaseError> {
+    let motion = case.loading.motion();
+    let mut depths = case.stepping.report_strokes.clone();
+    for value in case.reference_values()? {
+        if let case::Instant::Travel(depth) = value.when {
+            depths.push(depth);
+        }
+    }
+    depths.retain(|&depth| depth < motion.stroke);
+    let mut times: Vec<f64> = depths
+        .iter()
+        .map(|&depth| motion.time_at_depth(depth))
+        .collect();
+    times.extend([motion.time_load, motion.end()]);
+    let equal = |start: f64, end: f64, count: usize| {
+        (1..count).map(move |k| start + (end - start) * k as f64 / count as f64)
+    };
+    times.extend(equal(0.0, motion.time_load, case.stepping.fixed_steps_load));
+    if motion.end() > motion.time_load {
+        let count = case.stepping.fixed_steps_unload;
+        times.extend(equal(motion.time_load, motion.end(), count));
+    }
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    Ok(times)
 }
 
 #[cfg(test)]

@@ -195,7 +195,7 @@ impl System {
     /// Residual at time `t`, unknowns `u` and accelerations `a` (none in statics). Collective.
     ///
     /// # Errors
-    /// [`Failure::Domain`] if an element is turned over; [`System::take_failure`] tells which.
+    /// [`Failure::Domain`] if an element is inverted; [`System::take_failure`] tells which.
     pub fn residual(
         &self,
         t: f64,

@@ -10,7 +10,7 @@ use super::LocalSystem;
 use super::local::LocalContact;
 use super::pattern::{CONTACT_ENTRIES, CONTACT_LAYOUT as AT, ELEMENT_ENTRIES};
 use crate::contact::{FrictionState, PointPosition};
-use crate::element::{ElementForce, SinglePointFailure};
+use crate::element::{ElementForce, GaussPointFailure};
 
 /// An element that cannot be evaluated.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -21,7 +21,7 @@ pub struct ElementFailure {
     /// Its current position, mm.
     pub position: [f64; 2],
     /// What is wrong.
-    pub cause: SinglePointFailure,
+    pub cause: GaussPointFailure,
 }
 
 impl LocalSystem {
@@ -142,7 +142,7 @@ impl LocalSystem {
         out[AT.force_u].copy_from_slice(tangent.force_u.as_flattened());
         out[AT.force_multiplier].copy_from_slice(&tangent.force_multiplier);
         out[AT.closure_u].copy_from_slice(&tangent.closure_u);
-        out[AT.closure_multiplier] = tangent.closure_multiplier;
+        out[AT.closure_multiplier] = tangent.compliance;
         out[AT.closure_gap] = tangent.closure_gap;
         out[AT.complementarity_u].copy_from_slice(&tangent.complementarity_u);
         out[AT.complementarity_multiplier] = tangent.complementarity_multiplier;
@@ -171,7 +171,7 @@ impl LocalSystem {
         &self,
         element: usize,
         u: &[f64],
-        cause: SinglePointFailure,
+        cause: GaussPointFailure,
     ) -> ElementFailure {
         let corner = self.connectivity[element][0];
         let [x, y] = self.coordinates[corner];

@@ -14,6 +14,7 @@ use crate::contact::{
 use crate::element::Quad8;
 use crate::material::PointState;
 use crate::mesh::{Partition, SurfaceSide};
+use crate::plane::interpolate;
 
 /// Committed friction this close to its limit, as a share of it, is at the limit.
 const AT_LIMIT: f64 = 1e-9;
@@ -168,10 +169,11 @@ impl LocalSystem {
                     law: ContactLaw {
                         shape: sample.shape,
                         moves_on: sample.moves.then_some(edge_length),
-                        give: problem.contact_compliance * problem.young_modulus / length,
+                        compliance: problem.contact_compliance * problem.young_modulus / length,
                         friction: (problem.friction_coefficient > 0.0).then(|| Friction {
                             coefficient: problem.friction_coefficient,
-                            give: problem.friction_compliance * problem.young_modulus / length,
+                            compliance: problem.friction_compliance * problem.young_modulus
+                                / length,
                         }),
                     },
                     length,
@@ -266,7 +268,7 @@ fn starting_friction(
     sample: &ContactSample,
 ) -> FrictionState {
     let nodes = edge_nodes.map(|n| problem.mesh.nodes[n]);
-    let x = [0, 1].map(|k| (0..3).map(|a| sample.shape[a] * nodes[a][k]).sum());
+    let x = interpolate(sample.shape, &nodes);
     FrictionState {
         traction: 0.0,
         arc_length: tool.profile.distance(x).arc_length,

@@ -104,7 +104,7 @@ impl LocalSystem {
                 let beyond = friction.abs() / law.coefficient - force.max(0.0);
                 partial.maxima[5] = partial.maxima[5].max(beyond);
             }
-            partial.sums[6] += 0.5 * force * contact.law.give * u[m];
+            partial.sums[6] += 0.5 * force * contact.law.compliance * u[m];
             if gap <= 0.0 && force > 0.0 {
                 partial.sums[7] += 1.0;
             }

@@ -6,6 +6,7 @@ use super::{LocalSystem, System, SystemError};
 use crate::contact::ContactState;
 use crate::element::{NODES, gauss_points};
 use crate::mesh::SurfaceSide;
+use crate::plane::{determinant, interpolate};
 
 /// Values summed at a node over its elements and contact points: four stress components and the
 /// plastic strain (each weighted by one per element), the number of elements, contact force (N per
@@ -157,8 +158,9 @@ impl LocalSystem {
                 let (response, f, _) = self.kernels[element]
                     .point_response(point, &values, &self.problem.material, state)
                     .map_err(|cause| self.element_failure(element, u, cause))?;
-                let volume_ratio = f[0][0] * f[1][1] - f[0][1] * f[1][0];
-                let [xx, xy, yy, zz] = response.kirchhoff.map(|s| s / volume_ratio);
+                let volume_ratio = determinant(&f);
+                let cauchy = response.kirchhoff.map(|s| s / volume_ratio);
+                let [xx, yy, zz, xy] = cauchy.components();
                 let channels = [xx, yy, zz, xy, state.equivalent_plastic_strain];
                 for (&node, weight) in nodes.iter().zip(sampler.weights[point]) {
                     for (sum, channel) in sums[node].iter_mut().zip(channels) {
@@ -247,11 +249,8 @@ impl LocalSystem {
     /// edge), and on which face.
     pub fn contact_reference(&self, point: usize) -> ([f64; 2], SurfaceSide) {
         let contact = &self.contacts[point];
-        let place = [0, 1].map(|k| {
-            let nodes = contact.nodes.iter().zip(contact.law.shape);
-            nodes.map(|(&n, s)| s * self.coordinates[n][k]).sum()
-        });
-        (place, contact.side)
+        let nodes = contact.nodes.map(|n| self.coordinates[n]);
+        (interpolate(contact.law.shape, &nodes), contact.side)
     }
 
     /// All contact points of this rank at time `t` (ms) and unknowns `u` (local).

@@ -10,6 +10,7 @@ use petsc::{Vector, VectorRef};
 use super::{System, UNKNOWNS_PER_POINT};
 use crate::contact::FrictionState;
 use crate::material::PointState;
+use crate::plane::PlaneTensor;
 
 /// Numbers per Gauss point: C_p⁻¹ (xx, xy, yy, zz) and equivalent plastic strain.
 const PER_GAUSS_POINT: usize = 5;
@@ -79,7 +80,7 @@ impl System {
             .iter()
             .flat_map(|state| {
                 let PointState {
-                    cp_inverse: [xx, xy, yy, zz],
+                    cp_inverse: PlaneTensor { xx, yy, zz, xy },
                     equivalent_plastic_strain,
                 } = *state;
                 [xx, xy, yy, zz, equivalent_plastic_strain]
@@ -152,7 +153,7 @@ impl System {
         for (state, number) in local.states.iter_mut().zip(numbers) {
             let [xx, xy, yy, zz, equivalent_plastic_strain] = gauss[number];
             *state = PointState {
-                cp_inverse: [xx, xy, yy, zz],
+                cp_inverse: PlaneTensor { xx, yy, zz, xy },
                 equivalent_plastic_strain,
             };
         }

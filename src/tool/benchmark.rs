@@ -9,7 +9,7 @@ use super::{Piece, Profile};
 /// (0, -(`radius` + `shoulder_radius`)).
 pub fn die(radius: f64, shoulder_radius: f64, reach: f64) -> Profile {
     let edge = radius + shoulder_radius;
-    Profile::new(vec![
+    Profile::chained(vec![
         Piece::Arc {
             centre: [0.0, -shoulder_radius],
             radius,
@@ -33,7 +33,7 @@ pub fn die(radius: f64, shoulder_radius: f64, reach: f64) -> Profile {
 /// (0, `lowest`), and vertical sides of the given `height` above its centre (all mm).
 pub fn punch(radius: f64, lowest: f64, height: f64) -> Profile {
     let centre = lowest + radius;
-    Profile::new(vec![
+    Profile::chained(vec![
         Piece::Segment {
             start: [radius, centre + height],
             end: [radius, centre],

@@ -4,8 +4,10 @@
 
 mod benchmark;
 mod motion;
+mod piece;
 mod profile;
 
 pub use benchmark::{die, punch};
 pub use motion::{Motion, PunchMotion};
-pub use profile::{Distance, Piece, Profile};
+pub use piece::{Distance, Piece};
+pub use profile::{Profile, ProfileError};

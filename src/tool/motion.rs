@@ -1,4 +1,4 @@
-//! The punch's way in time: down by the stroke, then up again.
+//! The punch's motion in time: down by the stroke, then up again.
 
 /// Stroke against time, linear in each phase.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,7 +9,7 @@ pub struct PunchMotion {
     pub unload_fraction: f64,
     /// Duration of the stroke, ms.
     pub time_load: f64,
-    /// Duration of the way back, ms.
+    /// Duration of the travel back, ms.
     pub time_unload: f64,
 }
 
@@ -21,8 +21,8 @@ impl PunchMotion {
         self.stroke * (down - self.unload_fraction * back)
     }
 
-    /// How far the punch has gone at time `t` (ms), down and back together, mm.
-    pub fn way(&self, t: f64) -> f64 {
+    /// How far the punch has travelled at time `t` (ms), down and back together, mm.
+    pub fn travel(&self, t: f64) -> f64 {
         if t <= self.time_load {
             self.depth(t)
         } else {
@@ -39,7 +39,7 @@ impl PunchMotion {
         }
     }
 
-    /// The time on the way down at which the punch is at `depth` (mm), ms.
+    /// The time of the downward travel at which the punch is at `depth` (mm), ms.
     pub fn time_at_depth(&self, depth: f64) -> f64 {
         self.time_load * depth / self.stroke
     }
@@ -80,7 +80,7 @@ mod tests {
         assert_eq!(motion.depth(900.0), 28.5);
         assert!((motion.depth(1000.0) - 25.65).abs() < 1e-14);
         assert_eq!(motion.end(), 1000.0);
-        assert!((motion.way(1000.0) - 31.35).abs() < 1e-12 && motion.way(450.0) == 14.25);
+        assert!((motion.travel(1000.0) - 31.35).abs() < 1e-12 && motion.travel(450.0) == 14.25);
         assert!((motion.depth(motion.time_at_depth(10.0)) - 10.0).abs() < 1e-14);
     }
 }

@@ -1,53 +1,58 @@
 //! Rigid profiles as chains of arcs and segments, with an exact signed distance.
 
-/// One piece of a profile. The chain is walked with the free side on the left, so the outward
-/// normal is the walking direction turned by +90 degrees.
-#[derive(Clone, Copy, Debug)]
-pub enum Piece {
-    /// A straight piece from `start` to `end` (mm).
-    Segment {
-        /// First point.
-        start: [f64; 2],
-        /// Last point.
-        end: [f64; 2],
-    },
-    /// A circular piece around `centre`, from angle `from` to angle `to` (radians, counter-clockwise
-    /// positive). Walked counter-clockwise (`to > from`) it is concave: the free side holds the
-    /// centre. Walked clockwise it is convex. It spans at most a full turn.
-    Arc {
-        /// Centre, mm.
-        centre: [f64; 2],
-        /// Radius, mm.
-        radius: f64,
-        /// Angle of the first point.
-        from: f64,
-        /// Angle of the last point.
-        to: f64,
-    },
-}
+use super::piece::{Distance, End, Piece};
+use crate::plane::{Vector, dot};
 
-/// Signed distance of a point to a profile with its derivatives, and the arc length of the foot
-/// point with its derivatives. Symmetric matrices are stored as xx, xy, yy.
-#[derive(Clone, Copy, Debug)]
-pub struct Distance {
-    /// Signed distance, mm; positive on the free side.
-    pub value: f64,
-    /// Its gradient, the outward normal at the foot point.
-    pub gradient: [f64; 2],
-    /// Its Hessian, 1/mm.
-    pub hessian: [f64; 3],
-    /// Arc length of the foot point from the start of the chain, mm.
-    pub arc_length: f64,
-    /// Gradient of the arc length.
-    pub arc_gradient: [f64; 2],
-    /// Hessian of the arc length, 1/mm.
-    pub arc_hessian: [f64; 3],
+/// Where the next piece may begin, as a share of the largest coordinate or of a millimetre, whichever is more.
+const CLOSED: f64 = 1e-9;
+/// Two pieces whose normals add up to less than this fold back onto each other.
+const FOLDED: f64 = 1e-6;
+
+/// Why pieces are no profile. Pieces are counted from 1.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ProfileError {
+    /// There is none.
+    #[error("a profile needs at least one piece")]
+    Empty,
+    /// A piece by itself cannot be used.
+    #[error("piece {piece} of the profile {problem}")]
+    Piece {
+        /// Its number.
+        piece: usize,
+        /// What is wrong with it.
+        problem: &'static str,
+    },
+    /// A piece does not begin where the one before ends.
+    #[error(
+        "piece {piece} of the profile begins {gap:.3e} mm from the end of the one before, at ({:.6}, {:.6}) mm; at most \
+         {tolerance:.1e} mm is rounding",
+        at[0], at[1]
+    )]
+    Gap {
+        /// Number of the later piece.
+        piece: usize,
+        /// Where it begins, mm.
+        at: Vector,
+        /// How far from the end of the one before, mm.
+        gap: f64,
+        /// What would still be allowed, mm.
+        tolerance: f64,
+    },
+    /// A piece goes back along the one before, so that no side is free.
+    #[error("piece {piece} of the profile folds back onto the one before at ({:.6}, {:.6}) mm", at[0], at[1])]
+    FoldsBack {
+        /// Number of the later piece.
+        piece: usize,
+        /// Where, mm.
+        at: Vector,
+    },
 }
 
 /// A chain of pieces, each starting where the one before ends. Straight first and last pieces go on
 /// for ever.
 #[derive(Clone, Debug)]
 pub struct Profile {
+    /// At least one.
     pieces: Vec<Piece>,
     /// Arc length at the start of each piece, mm.
     arc_starts: Vec<f64>,
@@ -55,179 +60,31 @@ pub struct Profile {
     ends: Vec<[End; 2]>,
 }
 
-/// Below this distance from an arc's centre the direction to the foot point is arbitrary, mm.
-const CENTRE_RADIUS: f64 = 1e-9;
-
-impl Piece {
-    fn length(&self) -> f64 {
-        match *self {
-            Piece::Segment { start, end } => (end[0] - start[0]).hypot(end[1] - start[1]),
-            Piece::Arc {
-                radius, from, to, ..
-            } => radius * (to - from).abs(),
-        }
-    }
-
-    fn at(&self, share: f64) -> [f64; 2] {
-        match *self {
-            Piece::Segment { start, end } => [
-                start[0] + share * (end[0] - start[0]),
-                start[1] + share * (end[1] - start[1]),
-            ],
-            Piece::Arc {
-                centre,
-                radius,
-                from,
-                to,
-            } => {
-                let angle = from + share * (to - from);
-                [
-                    centre[0] + radius * angle.cos(),
-                    centre[1] + radius * angle.sin(),
-                ]
-            }
-        }
-    }
-
-    /// Signed distance if the foot point lies within the piece. `open_start` and `open_end` let a
-    /// segment go on beyond its ends.
-    fn distance(&self, x: [f64; 2], open_start: bool, open_end: bool) -> Option<Distance> {
-        match *self {
-            Piece::Segment { start, end } => {
-                let length = self.length();
-                let tangent = [(end[0] - start[0]) / length, (end[1] - start[1]) / length];
-                let normal = [-tangent[1], tangent[0]];
-                let from_start = [x[0] - start[0], x[1] - start[1]];
-                let along = dot(from_start, tangent);
-                let before = along < 0.0 && !open_start;
-                let beyond = along > length && !open_end;
-                (!before && !beyond).then(|| Distance {
-                    value: dot(from_start, normal),
-                    gradient: normal,
-                    hessian: [0.0; 3],
-                    arc_length: along,
-                    arc_gradient: tangent,
-                    arc_hessian: [0.0; 3],
-                })
-            }
-            Piece::Arc {
-                centre,
-                radius,
-                from,
-                to,
-            } => {
-                let from_centre = [x[0] - centre[0], x[1] - centre[1]];
-                let r = dot(from_centre, from_centre).sqrt();
-                let turn = (to - from).signum();
-                let (angle, radial, r) = if r < CENTRE_RADIUS {
-                    let middle = 0.5 * (from + to);
-                    (
-                        0.5 * (to - from).abs(),
-                        [middle.cos(), middle.sin()],
-                        CENTRE_RADIUS,
-                    )
-                } else {
-                    let walked = turn * (from_centre[1].atan2(from_centre[0]) - from);
-                    let walked = walked.rem_euclid(std::f64::consts::TAU);
-                    (walked, [from_centre[0] / r, from_centre[1] / r], r)
-                };
-                (angle <= (to - from).abs())
-                    .then(|| arc_distance(radial, r, radius, turn, radius * angle))
-            }
-        }
-    }
-
-    /// Its end at `share` 0 or 1 of its length.
-    fn end(&self, share: f64) -> End {
-        let tangent = match *self {
-            Piece::Segment { start, end } => {
-                let length = self.length();
-                [(end[0] - start[0]) / length, (end[1] - start[1]) / length]
-            }
-            Piece::Arc { from, to, .. } => {
-                let angle = from + share * (to - from);
-                let turn = (to - from).signum();
-                [-turn * angle.sin(), turn * angle.cos()]
-            }
-        };
-        End {
-            x: self.at(share),
-            normal: [-tangent[1], tangent[0]],
-            arc_length: share * self.length(),
-        }
-    }
-}
-
-/// An end point of a piece.
-#[derive(Clone, Copy, Debug)]
-struct End {
-    x: [f64; 2],
-    normal: [f64; 2],
-    /// From the start of the piece, mm.
-    arc_length: f64,
-}
-
-impl End {
-    /// Distance to the end point, on the side told by the piece's own normal there.
-    fn distance(&self, x: [f64; 2]) -> Distance {
-        let away = [x[0] - self.x[0], x[1] - self.x[1]];
-        let r = dot(away, away).sqrt().max(CENTRE_RADIUS);
-        let side = if dot(away, self.normal) >= 0.0 {
-            1.0
-        } else {
-            -1.0
-        };
-        let radial = [side * away[0] / r, side * away[1] / r];
-        Distance {
-            value: side * r,
-            gradient: radial,
-            hessian: tangential_projector(radial, side / r),
-            arc_length: self.arc_length,
-            arc_gradient: [0.0; 2],
-            arc_hessian: [0.0; 3],
-        }
-    }
-}
-
-/// Distance and arc length for a point at radius `r` in direction `radial` from the centre of an
-/// arc walked with sign `turn`.
-fn arc_distance(radial: [f64; 2], r: f64, radius: f64, turn: f64, arc: f64) -> Distance {
-    // Convex (turn = -1): r - radius; concave: radius - r.
-    let gradient = [-turn * radial[0], -turn * radial[1]];
-    let tangent = [-turn * radial[1], turn * radial[0]];
-    let stretch = radius / r;
-    // Second derivative of the angle: -(e_r e_t + e_t e_r) / r^2.
-    let mixed = -stretch / r;
-    Distance {
-        value: -turn * (r - radius),
-        gradient,
-        hessian: tangential_projector(radial, -turn / r),
-        arc_length: arc,
-        arc_gradient: [stretch * tangent[0], stretch * tangent[1]],
-        arc_hessian: [
-            2.0 * mixed * radial[0] * tangent[0],
-            mixed * (radial[0] * tangent[1] + radial[1] * tangent[0]),
-            2.0 * mixed * radial[1] * tangent[1],
-        ],
-    }
-}
-
-/// `scale` times (I - n n).
-fn tangential_projector(n: [f64; 2], scale: f64) -> [f64; 3] {
-    [
-        scale * n[1] * n[1],
-        -scale * n[0] * n[1],
-        scale * n[0] * n[0],
-    ]
-}
-
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
 impl Profile {
-    /// A chain of pieces. Each must start where the one before ends.
-    pub fn new(pieces: Vec<Piece>) -> Self {
+    /// A chain of pieces.
+    ///
+    /// # Errors
+    /// There is no piece, one of them is unusable, or one does not begin where the one before ends.
+    pub fn new(pieces: Vec<Piece>) -> Result<Self, ProfileError> {
+        if pieces.is_empty() {
+            return Err(ProfileError::Empty);
+        }
+        for (piece, number) in pieces.iter().zip(1..) {
+            if let Some(problem) = piece.problem() {
+                return Err(ProfileError::Piece {
+                    piece: number,
+                    problem,
+                });
+            }
+        }
+        for (pair, number) in pieces.windows(2).zip(2..) {
+            check_joint(&pair[0].end(1.0), &pair[1].end(0.0), number)?;
+        }
+        Ok(Self::chained(pieces))
+    }
+
+    /// The same of pieces that are known to be a chain, at least one.
+    pub(super) fn chained(pieces: Vec<Piece>) -> Self {
         let arc_starts = pieces
             .iter()
             .scan(0.0, |total, piece| {
@@ -236,22 +93,30 @@ impl Profile {
                 Some(start)
             })
             .collect();
+        let mut ends: Vec<[End; 2]> = pieces.iter().map(|p| [p.end(0.0), p.end(1.0)]).collect();
+        for later in 1..ends.len() {
+            let normal = sum(ends[later - 1][1].normal, ends[later][0].normal);
+            ends[later - 1][1].normal = normal;
+            ends[later][0].normal = normal;
+        }
         Self {
-            ends: pieces.iter().map(|p| [p.end(0.0), p.end(1.0)]).collect(),
             pieces,
             arc_starts,
+            ends,
         }
     }
 
     /// Signed distance of `x` (mm) to the closest piece.
-    pub fn distance(&self, x: [f64; 2]) -> Distance {
+    pub fn distance(&self, x: Vector) -> Distance {
         let last = self.pieces.len() - 1;
-        let mut best: Option<Distance> = None;
+        let mut best = Distance::NOWHERE;
         let mut consider = |mut candidate: Distance, arc_start: f64| {
             candidate.arc_length += arc_start;
-            if best.is_none_or(|b| candidate.value.abs() < b.value.abs()) {
-                best = Some(candidate);
+            // A point that is not a number keeps a distance that is none.
+            if best.value.abs() <= candidate.value.abs() {
+                return;
             }
+            best = candidate;
         };
         for (i, piece) in self.pieces.iter().enumerate() {
             let start = self.arc_starts[i];
@@ -264,20 +129,13 @@ impl Profile {
                 }
             }
         }
-        best.unwrap_or(Distance {
-            value: f64::INFINITY,
-            gradient: [0.0; 2],
-            hessian: [0.0; 3],
-            arc_length: 0.0,
-            arc_gradient: [0.0; 2],
-            arc_hessian: [0.0; 3],
-        })
+        best
     }
 
     /// The profile as a polyline with at most `spacing` (mm) between points, for pictures. The middle
     /// of every arc is a point.
-    pub fn polyline(&self, spacing: f64) -> Vec<[f64; 2]> {
-        let mut points: Vec<[f64; 2]> = Vec::new();
+    pub fn polyline(&self, spacing: f64) -> Vec<Vector> {
+        let mut points: Vec<Vector> = Vec::new();
         for piece in &self.pieces {
             let divisions = match piece {
                 Piece::Segment { .. } => 1,
@@ -288,6 +146,33 @@ impl Profile {
         }
         points
     }
+}
+
+fn check_joint(end: &End, start: &End, piece: usize) -> Result<(), ProfileError> {
+    let gap = (start.x[0] - end.x[0]).hypot(start.x[1] - end.x[1]);
+    let size = start
+        .x
+        .iter()
+        .chain(&end.x)
+        .fold(1.0_f64, |m, x| m.max(x.abs()));
+    let tolerance = CLOSED * size;
+    if gap > tolerance {
+        return Err(ProfileError::Gap {
+            piece,
+            at: start.x,
+            gap,
+            tolerance,
+        });
+    }
+    let normal = sum(end.normal, start.normal);
+    if dot(normal, normal).sqrt() < FOLDED {
+        return Err(ProfileError::FoldsBack { piece, at: start.x });
+    }
+    Ok(())
+}
+
+fn sum(a: Vector, b: Vector) -> Vector {
+    [a[0] + b[0], a[1] + b[1]]
 }
 
 #[cfg(test)]
@@ -334,17 +219,17 @@ mod tests {
                 close(d.gradient[0], slope(right.value, left.value), "gradient x");
                 close(d.gradient[1], slope(up.value, down.value), "gradient y");
                 close(
-                    d.hessian[0],
+                    d.hessian.xx,
                     slope(right.gradient[0], left.gradient[0]),
                     "hessian xx",
                 );
                 close(
-                    d.hessian[1],
+                    d.hessian.xy,
                     slope(up.gradient[0], down.gradient[0]),
                     "hessian xy",
                 );
                 close(
-                    d.hessian[2],
+                    d.hessian.yy,
                     slope(up.gradient[1], down.gradient[1]),
                     "hessian yy",
                 );
@@ -359,9 +244,9 @@ mod tests {
                     "arc y",
                 );
                 let [pr, pl, pu, pd] = [right, left, up, down].map(|d| d.arc_gradient);
-                close(d.arc_hessian[0], slope(pr[0], pl[0]), "arc hessian xx");
-                close(d.arc_hessian[1], slope(pu[0], pd[0]), "arc hessian xy");
-                close(d.arc_hessian[2], slope(pu[1], pd[1]), "arc hessian yy");
+                close(d.arc_hessian.xx, slope(pr[0], pl[0]), "arc hessian xx");
+                close(d.arc_hessian.xy, slope(pu[0], pd[0]), "arc hessian xy");
+                close(d.arc_hessian.yy, slope(pu[1], pd[1]), "arc hessian yy");
             }
         }
     }
@@ -398,6 +283,120 @@ mod tests {
                 before = Some((x, d.arc_length));
             }
             assert!(before.is_some_and(|(_, s)| (s - length).abs() < 1e-4));
+        }
+    }
+
+    /// A nose that points down, with this angle (radians) at its tip in the origin.
+    fn nose(angle: f64) -> Profile {
+        let (sin, cos) = (0.5 * angle).sin_cos();
+        let [right, left] = [[10.0 * sin, 10.0 * cos], [-10.0 * sin, 10.0 * cos]];
+        let tip = [0.0, 0.0];
+        Profile::new(vec![
+            Piece::Segment {
+                start: right,
+                end: tip,
+            },
+            Piece::Segment {
+                start: tip,
+                end: left,
+            },
+        ])
+        .unwrap()
+    }
+
+    #[test]
+    fn at_a_sharp_corner_what_is_outside_is_free_and_what_is_inside_is_not() {
+        for degrees in [10.0_f64, 60.0, 90.0, 150.0, 210.0, 300.0, 350.0] {
+            let nose = nose(degrees.to_radians());
+            for i in 0..=100 {
+                for j in 0..50 {
+                    let x = [
+                        0.1 * (f64::from(i) - 50.0) + 0.003,
+                        0.1 * f64::from(j) - 2.503,
+                    ];
+                    // Angle from the nose's axis, and with it the distance to a wedge that goes on for ever.
+                    let aside = x[0].abs().atan2(x[1]) - 0.5 * degrees.to_radians();
+                    let r = x[0].hypot(x[1]);
+                    let expected = match aside.abs() {
+                        beside if beside < std::f64::consts::FRAC_PI_2 => r * aside.sin(),
+                        _ => r * aside.signum(),
+                    };
+                    let d = nose.distance(x);
+                    assert!(
+                        (d.value - expected).abs() < 1e-12,
+                        "{degrees}° at {x:?}: {d:?}"
+                    );
+                    assert!((d.gradient[0].hypot(d.gradient[1]) - 1.0).abs() < 1e-12);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_nearest_point_of_a_corner_between_arcs_tells_the_side_as_well() {
+        // Two convex arcs that meet in a sharp edge at the origin, like the tip of a lens that points down.
+        let arc = |x: f64, from: f64, to: f64| Piece::Arc {
+            centre: [x, 1.0],
+            radius: 2.0_f64.sqrt(),
+            from,
+            to,
+        };
+        let [quarter, eighth] = [std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_4];
+        let lens = Profile::new(vec![
+            arc(-1.0, 0.0, -eighth),
+            arc(1.0, -quarter - eighth, -2.0 * quarter),
+        ])
+        .unwrap();
+        for k in -4..=4 {
+            let (sin, cos) = (0.19 * f64::from(k)).sin_cos();
+            let d = lens.distance([0.3 * sin, -0.3 * cos]);
+            assert!((d.value - 0.3).abs() < 1e-12, "{k}: {d:?}");
+        }
+        assert!(lens.distance([0.0, 0.1]).value < 0.0);
+    }
+
+    #[test]
+    fn what_is_no_chain_is_refused_with_the_place() {
+        let segment = |start: Vector, end: Vector| Piece::Segment { start, end };
+        let refusal = |pieces: &[Piece]| Profile::new(pieces.to_vec()).unwrap_err();
+        assert_eq!(refusal(&[]), ProfileError::Empty);
+        let first = segment([0.0, 0.0], [100.0, 0.0]);
+        let error = refusal(&[first, segment([100.25, 0.0], [200.0, 0.0])]);
+        assert!(matches!(error, ProfileError::Gap { piece: 2, gap, .. } if gap == 0.25));
+        assert_eq!(
+            error.to_string(),
+            "piece 2 of the profile begins 2.500e-1 mm from the end of the one before, at (100.250000, 0.000000) mm; \
+             at most 1.0e-7 mm is rounding"
+        );
+        assert!(Profile::new(vec![first, segment([100.0 + 1e-8, 0.0], [200.0, 0.0])]).is_ok());
+        let error = refusal(&[first, segment([100.0, 0.0], [50.0, 0.0])]);
+        assert!(matches!(error, ProfileError::FoldsBack { piece: 2, .. }));
+        let arc = |radius: f64, to: f64| Piece::Arc {
+            centre: [0.0, 0.0],
+            radius,
+            from: 0.0,
+            to,
+        };
+        for (piece, word) in [
+            (segment([1.0, 1.0], [1.0, 1.0]), "no length"),
+            (segment([f64::NAN, 1.0], [1.0, 1.0]), "not finite"),
+            (arc(1.0, 0.0), "no length"),
+            (arc(0.0, 1.0), "radius is not positive"),
+            (arc(1.0, 7.0), "more than a full turn"),
+        ] {
+            assert!(refusal(&[piece]).to_string().contains(word), "{piece:?}");
+        }
+    }
+
+    #[test]
+    fn the_benchmarks_tools_are_chains_whatever_their_sizes() {
+        for size in [1e-5, 0.1, 1.0, 25.0, 1e5] {
+            for shoulder in [1e-5, 4.0, 1e5] {
+                let tools = [die(size, shoulder, 60.0), punch(size, shoulder, 28.5)];
+                for tool in tools {
+                    assert!(Profile::new(tool.pieces).is_ok(), "{size} {shoulder}");
+                }
+            }
         }
     }
 }

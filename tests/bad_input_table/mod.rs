@@ -13,7 +13,7 @@ pub enum Given {
 }
 
 /// One bad input.
-pub struct Slip {
+pub struct Mistake {
     pub what: &'static str,
     pub given: Given,
     /// The numbers of ranks it is tried on.
@@ -69,8 +69,8 @@ const fn words(
     ranks: &'static [usize],
     given: &'static str,
     sentence: &'static str,
-) -> Slip {
-    Slip {
+) -> Mistake {
+    Mistake {
         what,
         given: Given::Words(given),
         ranks,
@@ -79,7 +79,7 @@ const fn words(
 }
 
 /// All of them, by the place where they are found.
-pub const SLIPS: &[Slip] = &[
+pub const MISTAKES: &[Mistake] = &[
     words(
         "misspelt option",
         BOTH,
@@ -252,7 +252,61 @@ pub const SLIPS: &[Slip] = &[
         "PETSc's other steppers",
         ONE,
         "-ts_type euler",
-        "option -ts_type euler: the program chooses the steps itself, so only alpha2 works here; leave it out, and set the steps with -dt_initial, -dt_max, -dt_min or -fixed_steps_load",
+        "option -ts_type euler: the equations with inertia (-dynamics slow) are of second order in time, so only alpha2 works here; leave it out, and choose between inertia and statics with -dynamics",
+    ),
+    words(
+        "PETSc's other steppers in statics",
+        BOTH,
+        "-dynamics none -ts_type alpha2",
+        "option -ts_type alpha2: the static equations (-dynamics none) hold at the end of each step, so only beuler works here; leave it out, and choose between inertia and statics with -dynamics",
+    ),
+    words(
+        "spectral radius of PETSc's stepper",
+        BOTH,
+        "-ts_alpha_radius 0.5",
+        "option -ts_alpha_radius 0.5: contact, stress and inertia hold at the end of a step only with the parameters the program sets (spectral radius 0); leave it out, and shorten the steps with -dt_max where vibrations are damped too much",
+    ),
+    words(
+        "alpha_m of PETSc's stepper",
+        ONE,
+        "-ts_alpha_alpha_m 1.5",
+        "option -ts_alpha_alpha_m 1.5: contact, stress and inertia hold at the end of a step only with the parameters the program sets (spectral radius 0); leave it out, and shorten the steps with -dt_max where vibrations are damped too much",
+    ),
+    words(
+        "alpha_f of PETSc's stepper",
+        ONE,
+        "-ts_alpha_alpha_f 0.9",
+        "option -ts_alpha_alpha_f 0.9: contact, stress and inertia hold at the end of a step only with the parameters the program sets (spectral radius 0); leave it out, and shorten the steps with -dt_max where vibrations are damped too much",
+    ),
+    words(
+        "gamma of PETSc's stepper",
+        ONE,
+        "-ts_alpha_gamma 0.6",
+        "option -ts_alpha_gamma 0.6: contact, stress and inertia hold at the end of a step only with the parameters the program sets (spectral radius 0); leave it out, and shorten the steps with -dt_max where vibrations are damped too much",
+    ),
+    words(
+        "beta of PETSc's stepper",
+        ONE,
+        "-ts_alpha_beta 0.3",
+        "option -ts_alpha_beta 0.3: contact, stress and inertia hold at the end of a step only with the parameters the program sets (spectral radius 0); leave it out, and shorten the steps with -dt_max where vibrations are damped too much",
+    ),
+    words(
+        "PETSc's first step",
+        ONE,
+        "-ts_dt 0.5",
+        "option -ts_dt 0.5: the program chooses the steps itself; leave it out, and set the steps with -dt_initial, -dt_max, -dt_min or -fixed_steps_load",
+    ),
+    words(
+        "PETSc's first time",
+        ONE,
+        "-ts_init_time 1",
+        "option -ts_init_time 1: every run begins at time 0; leave it out, and set the times with -time_load and -time_unload",
+    ),
+    words(
+        "PETSc's last time",
+        ONE,
+        "-ts_max_time 1",
+        "option -ts_max_time 1: the motion of the punch ends the run; leave it out, and set the times with -time_load and -time_unload",
     ),
     words(
         "unknown solver of PETSc",
@@ -356,37 +410,37 @@ pub const SLIPS: &[Slip] = &[
         "-options_file range.opts",
         "option -sheet_ny 0: the value is out of range; give a whole number: 1 <= value <= 500 (default 5)",
     ),
-    Slip {
+    Mistake {
         what: "word in the environment",
         given: Given::Environment("-stroke 3 4"),
         ranks: BOTH,
         sentence: "environment variable PETSC_OPTIONS: argument '4' is neither an option nor the value of one: options are written -name value, see -help",
     },
-    Slip {
+    Mistake {
         what: "open quote in the environment",
         given: Given::Environment("-output_dir \"my results"),
         ranks: ONE,
         sentence: "environment variable PETSC_OPTIONS: the double quote before 'my results' is not closed; a value with spaces stands between double quotes",
     },
-    Slip {
+    Mistake {
         what: "missing option file in the environment",
         given: Given::Environment("-options_file nowhere.opts"),
         ranks: ONE,
         sentence: "environment variable PETSC_OPTIONS: option -options_file nowhere.opts: the file cannot be read (No such file or directory (os error 2)); give the path of a text file with an option on each line, for example inputs/ssnp155.opts",
     },
-    Slip {
+    Mistake {
         what: "argument that is not UTF-8",
         given: Given::Bytes(b"-stroke\xff"),
         ranks: BOTH,
         sentence: "argument '-stroke�' is not UTF-8 text: write it in UTF-8, and give files and folders names in UTF-8",
     },
-    Slip {
+    Mistake {
         what: "empty value",
         given: Given::Empty("-stroke"),
         ranks: ONE,
         sentence: "option -stroke has no value: give a real number in mm: 0 < value <= 100000 (default 28.5 mm)",
     },
-    Slip {
+    Mistake {
         what: "empty path",
         given: Given::Empty("-output_dir"),
         ranks: ONE,
@@ -534,7 +588,7 @@ pub const SLIPS: &[Slip] = &[
         "sheet drawn off the die",
         ONE,
         "-sheet_length 80",
-        "the sheet slips off the die's shoulder: at -stroke 28.5 mm the way round the punch to the shoulder is 39.290 mm and half of -sheet_length is 40 mm; give a -sheet_length above 80.581 mm or a shorter stroke",
+        "the sheet slips off the die's shoulder: at -stroke 28.5 mm the path round the punch to the shoulder is 39.290 mm and half of -sheet_length is 40 mm; give a -sheet_length above 80.581 mm or a shorter stroke",
     ),
     words(
         "more ranks than elements",

@@ -2,6 +2,7 @@
 
 use mpi::topology::SimpleCommunicator;
 use ssnp155::material::{PointState, VonMises};
+use ssnp155::plane::PlaneTensor;
 
 use crate::flow::{Constants, bisect};
 use crate::row::{Answer, Case, Result, Row};
@@ -34,12 +35,12 @@ impl Driver {
         }
     }
 
-    /// Kirchhoff stress (xx, xy, yy, zz) at logarithmic strains, with the new state. The material
+    /// Kirchhoff stress at logarithmic strains, with the new state. The material
     /// keeps the stretch in z at one; another one enters through the elastic left Cauchy-Green
     /// tensor's component zz, which the state holds.
-    fn respond(&self, x: f64, y: f64, z: f64) -> ([f64; 4], PointState) {
+    fn respond(&self, x: f64, y: f64, z: f64) -> (PlaneTensor, PointState) {
         let mut state = self.state;
-        state.cp_inverse[3] *= (2.0 * (z - self.strain_z)).exp();
+        state.cp_inverse.zz *= (2.0 * (z - self.strain_z)).exp();
         let f = [[x.exp(), 0.0], [0.0, y.exp()]];
         let response = self
             .material
@@ -49,9 +50,9 @@ impl Driver {
     }
 
     /// Moves on to the logarithmic strain `x` with the free stresses at zero; gives the stress.
-    fn pull(&mut self, x: f64) -> [f64; 4] {
+    fn pull(&mut self, x: f64) -> PlaneTensor {
         let z = |y: f64| if self.free == Free::YAndZ { y } else { 0.0 };
-        let lateral = |y: f64| self.respond(x, y, z(y)).0[2];
+        let lateral = |y: f64| self.respond(x, y, z(y)).0.yy;
         let y = bisect(-2.0, 2.0, lateral);
         let (stress, state) = self.respond(x, y, z(y));
         self.state = state;
@@ -85,7 +86,7 @@ fn uniaxial(_: &SimpleCommunicator) -> Result<Answer> {
         Some((strain.parse::<f64>().ok()?, stress.parse::<f64>().ok()?))
     });
     for (index, (strain, stress)) in points.enumerate() {
-        let computed = driver.pull(strain)[0];
+        let computed = driver.pull(strain).xx;
         if index % 4 == 1 || index == 0 {
             let quantity = format!("Kirchhoff stress at strain {strain}, MPa");
             // The table's first strain has six digits: its stress may differ in the sixth.
@@ -120,7 +121,7 @@ fn plane_strain(_: &SimpleCommunicator) -> Result<Answer> {
             let strain = 0.5 * step as f64 / steps as f64;
             let stress = driver.pull(strain);
             if at.iter().any(|a| (a - strain).abs() < 1e-12) {
-                out.push([stress[0], stress[3], driver.plastic_strain()]);
+                out.push([stress.xx, stress.zz, driver.plastic_strain()]);
             }
         }
         out
@@ -174,7 +175,7 @@ fn cyclic(_: &SimpleCommunicator) -> Result<Answer> {
     for to in [0.05, -0.05, 0.1, 0.0_f64] {
         let mut stress = 0.0;
         for step in 1..=7 {
-            stress = driver.pull(from + (to - from) * f64::from(step) / 7.0)[0];
+            stress = driver.pull(from + (to - from) * f64::from(step) / 7.0).xx;
         }
         // to = plastic strain before ± dp ± yield stress / E.
         let sign = (to - from).signum();

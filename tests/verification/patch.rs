@@ -72,7 +72,7 @@ fn displacement(world: &SimpleCommunicator) -> Result<Answer> {
                 let f = [[1.0 + a, b], [c, 1.0 + d]];
                 let response = constants.material().respond(&f, &state)?;
                 state = response.state();
-                let [xx, xy, yy, zz] = response.kirchhoff;
+                let [xx, yy, zz, xy] = response.kirchhoff.components();
                 let volume = f[0][0] * f[1][1] - f[0][1] * f[1][0];
                 stress = [xx, yy, zz, xy].map(|s| s / volume);
             }

@@ -2,6 +2,7 @@
 
 use mpi::topology::SimpleCommunicator;
 use ssnp155::material::PointState;
+use ssnp155::plane::PlaneTensor;
 
 use crate::flow::{Constants, bisect, runge_kutta};
 use crate::row::{Answer, Case, Result, Row};
@@ -32,7 +33,7 @@ fn elastic(_: &SimpleCommunicator) -> Result<Answer> {
         let quantity = format!("τ_xy at γ = {gamma}, MPa");
         rows.push(Row::relative(
             quantity,
-            stress[1],
+            stress.xy,
             twice / a.cosh(),
             1e-10,
             SOURCE,
@@ -40,7 +41,7 @@ fn elastic(_: &SimpleCommunicator) -> Result<Answer> {
         let quantity = format!("τ_xx at γ = {gamma}, MPa");
         rows.push(Row::absolute(
             quantity,
-            stress[0],
+            stress.xx,
             twice * a.tanh(),
             1e-9 * twice,
             SOURCE,
@@ -127,7 +128,8 @@ fn plastic(_: &SimpleCommunicator) -> Result<Answer> {
         for step in 1..=steps {
             let gamma = end * step as f64 / steps as f64;
             let response = material.respond(&[[1.0, gamma], [0.0, 1.0]], &state)?;
-            (state, stress) = (response.state(), response.kirchhoff);
+            let PlaneTensor { xx, yy, zz, xy } = response.kirchhoff;
+            (state, stress) = (response.state(), [xx, xy, yy, zz]);
         }
         Ok((stress, state.equivalent_plastic_strain))
     };

@@ -57,6 +57,7 @@ pub fn flat(y: f64) -> Profile {
         start: [-1.0, y],
         end: [1.0, y],
     }])
+    .expect("one piece is a chain")
 }
 
 /// A drum of `radius` around the origin, free outside; its open part points down.
@@ -67,6 +68,7 @@ pub fn drum(radius: f64) -> Profile {
         from: 1.4 * PI,
         to: -0.4 * PI,
     }])
+    .expect("one piece is a chain")
 }
 
 /// A factor equal to time.

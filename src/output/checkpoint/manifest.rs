@@ -4,8 +4,8 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::sync;
 use crate::output::OutputError;
+use crate::output::atomic::sync;
 
 /// The format of all files of a checkpoint together. Another one is refused.
 pub const FORMAT: u32 = 1;

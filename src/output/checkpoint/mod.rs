@@ -9,10 +9,11 @@ mod manifest;
 #[cfg(test)]
 mod tests;
 
-use std::fs::{self, File};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::OutputError;
+use super::atomic::{self, sync};
 pub use manifest::{FORMAT, verify};
 use manifest::{MANIFEST, manifest_of};
 
@@ -63,7 +64,7 @@ fn fill_and_rename(
     fs::create_dir(unfinished).map_err(failed)?;
     fill(unfinished)?;
     let manifest = manifest_of(unfinished).map_err(failed)?;
-    super::atomic::write(&unfinished.join(MANIFEST), manifest.as_bytes())?;
+    atomic::write(&unfinished.join(MANIFEST), manifest.as_bytes())?;
     let rename = || {
         sync(unfinished)?;
         let replaced = with_ending(path, REPLACED);
@@ -82,11 +83,6 @@ fn with_ending(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(ending);
     path.with_file_name(name)
-}
-
-/// Brings a file or the names in a folder to the disk.
-fn sync(path: &Path) -> std::io::Result<()> {
-    File::open(path)?.sync_all()
 }
 
 /// The checkpoints of `folder`, complete or damaged later, the newest first.

@@ -1,9 +1,13 @@
 //! Deformed elements as the figure needs them, from one rank or from all.
 
-use mpi::datatype::PartitionMut;
-use mpi::traits::{Communicator, CommunicatorCollectives, Root};
+use mpi::traits::Communicator;
 
-use super::super::{FieldSample, SheetPart};
+use crate::output::SheetPart;
+use crate::ranks::gather_lists;
+use crate::system::NodeSample;
+
+/// Numbers of an element: two for each node, and its strain.
+const SIZE: usize = 17;
 
 /// One 8-node element in its deformed position.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,7 +20,7 @@ pub struct DeformedElement {
 
 impl DeformedElement {
     /// The elements of a part, each with the mean plastic strain of its nodes.
-    pub fn of(part: &SheetPart, samples: &[FieldSample]) -> Vec<Self> {
+    pub fn of(part: &SheetPart, samples: &[NodeSample]) -> Vec<Self> {
         let element = |quad: &[usize; 8]| Self {
             nodes: quad.map(|node| {
                 let ([x, y], [ux, uy]) = (part.coordinates[node], samples[node].displacement);
@@ -34,27 +38,14 @@ impl DeformedElement {
 
 /// Brings the elements of all ranks to rank 0, in the order of the ranks; the other ranks get none. Collective.
 pub fn gather_elements(comm: &impl Communicator, mine: &[DeformedElement]) -> Vec<DeformedElement> {
-    const SIZE: usize = 17;
     let flat: Vec<f64> = mine
         .iter()
         .flat_map(|e| e.nodes.into_iter().flatten().chain([e.plastic_strain]))
         .collect();
-    let mut counts = vec![0_i32; comm.size() as usize];
-    comm.all_gather_into(&(flat.len() as i32), &mut counts[..]);
-    let root = comm.process_at_rank(0);
+    let all = gather_lists(comm, &flat);
     if comm.rank() != 0 {
-        root.gather_varcount_into(&flat[..]);
         return Vec::new();
     }
-    let starts: Vec<i32> = counts
-        .iter()
-        .scan(0, |end, count| Some(std::mem::replace(end, *end + count)))
-        .collect();
-    let mut all = vec![0.0; counts.iter().sum::<i32>() as usize];
-    root.gather_varcount_into_root(
-        &flat[..],
-        &mut PartitionMut::new(&mut all[..], counts, starts),
-    );
     let element = |values: &[f64]| DeformedElement {
         nodes: std::array::from_fn(|node| [values[2 * node], values[2 * node + 1]]),
         plastic_strain: values[SIZE - 1],

@@ -17,7 +17,7 @@ use std::path::Path;
 pub use elements::{DeformedElement, gather_elements};
 pub use force::force_svg;
 pub use model::model_svg;
-pub use shape::{Shape, View, shape_svg};
+pub use shape::{Shape, shape_svg};
 
 use super::{OutputError, StepRecord, atomic};
 use crate::case::{Case, ReferenceForce};

@@ -10,6 +10,10 @@ use crate::case::Case;
 const LEFT: f64 = 78.0;
 const TOP: f64 = 60.0;
 const WIDTH: f64 = 860.0;
+/// What is free around the model, and how far labels are above what they name, as fractions of the sheet's half length with
+/// these denominators.
+const MARGIN: f64 = 12.0;
+const LABEL_ABOVE: f64 = 24.0;
 
 /// The sketch as SVG: both halves, with the punch at the start and, in outline, at full stroke. `die` and `punch` are their
 /// right halves from the axis outwards, the punch in its first position, mm.
@@ -19,9 +23,13 @@ const WIDTH: f64 = 860.0;
 pub fn model_svg(case: &Case, die: &[[f64; 2]], punch: &[[f64; 2]]) -> Result<String, String> {
     let (sheet, tools) = (&case.sheet, &case.tools);
     let half = sheet.half_length();
+    let margin = half / MARGIN;
     let (x, y) = (
-        (-half - 5.0, half + 5.0),
-        (-tools.die_edge() - 5.0, 0.8 * tools.punch_radius + 6.0),
+        (-half - margin, half + margin),
+        (
+            -tools.die_edge() - margin,
+            0.8 * tools.punch_radius + margin,
+        ),
     );
     let height = WIDTH * (y.1 - y.0) / (x.1 - x.0);
     let frame = Frame {
@@ -111,6 +119,7 @@ fn labels(canvas: &Canvas, frame: &Frame, case: &Case) -> Result<(), String> {
         )
     };
     let edge = tools.die_edge();
+    let above = case.sheet.half_length() / LABEL_ABOVE;
     say(
         0.0,
         0.45 * tools.punch_radius,
@@ -131,13 +140,18 @@ fn labels(canvas: &Canvas, frame: &Frame, case: &Case) -> Result<(), String> {
     )?;
     say(
         0.5 * (edge + case.sheet.half_length()),
-        case.sheet.thickness + 2.5,
+        case.sheet.thickness + above,
         format!("sheet, {} x {} mm", case.sheet.length, case.sheet.thickness),
         INK,
     )?;
     let deepest = case.sheet.thickness - case.loading.stroke;
     if -deepest > 0.6 * edge {
-        say(0.0, deepest + 4.0, "punch at full stroke".to_owned(), MARK)?;
+        say(
+            0.0,
+            deepest + 1.6 * above,
+            "punch at full stroke".to_owned(),
+            MARK,
+        )?;
     }
     Ok(())
 }

@@ -9,27 +9,28 @@ use super::elements::DeformedElement;
 use super::geometry::{
     boundary, clipped, curve, die_outline, grown, outline, punch_outline, region,
 };
+use crate::text::number;
 
 pub(super) const DIE: RGBColor = RGBColor(205, 209, 215);
 pub(super) const PUNCH: RGBColor = RGBColor(222, 225, 230);
 pub(super) const MARK: RGBColor = RGBColor(190, 24, 60);
 
-/// Side of the close-up, mm: wide enough for the gap on both sides of a sheet of 1 mm.
+/// Side of the close-up in thicknesses of the sheet: wide enough for the gap on both sides.
 const CLOSE_UP_SIDE: f64 = 5.0;
+/// Width of the picture of the whole sheet, and its greatest height, pixels.
+const WIDTH: f64 = 780.0;
+const MOST_HEIGHT: f64 = 700.0;
+/// Upper end of the colours before anything yields.
+const NO_STRAIN: f64 = 1e-3;
 /// Height of the lines above the frames and space below them, pixels.
 const TOP: f64 = 82.0;
 const BELOW: f64 = 62.0;
 const LEFT: f64 = 78.0;
-
-/// What the figure shows.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum View {
-    /// The whole sheet (the half model and its mirror image), and beside it a close-up of the place with the largest
-    /// plastic strain.
-    Whole,
-    /// A rectangle [x from, x to, y from, y to], mm.
-    Window([f64; 4]),
-}
+/// What is free beside, above and below the sheet, and how high above the die at least is shown, as fractions of its half
+/// length with these denominators.
+const MARGIN_ACROSS: f64 = 12.0;
+const MARGIN_UP: f64 = 10.0;
+const HEADROOM: f64 = 5.0;
 
 /// One instant to be drawn.
 #[derive(Debug, Clone, Copy)]
@@ -44,13 +45,12 @@ pub struct Shape<'a> {
     pub punch: &'a [[f64; 2]],
     /// How far the punch has moved down, mm.
     pub stroke_mm: f64,
-    /// Upper end of the colours; the largest value in `elements` if `None`. Give it to compare instants.
-    pub plastic_strain_max: Option<f64>,
-    /// What to show.
-    pub view: View,
+    /// Half length and thickness of the undeformed sheet, mm: they frame the picture.
+    pub sheet: [f64; 2],
 }
 
-/// The figure as SVG. Element edges are drawn where elements are large enough to tell them apart.
+/// The figure as SVG: the whole sheet (the half model and its mirror image), and beside it a close-up of the place with the
+/// largest plastic strain. Element edges are drawn where elements are large enough to tell them apart.
 ///
 /// # Errors
 /// A sentence, if there is nothing to draw or the drawing fails.
@@ -71,13 +71,10 @@ pub fn shape_svg(shape: &Shape) -> Result<String, String> {
         strain.then(b.nodes[4][0].abs().total_cmp(&a.nodes[4][0].abs()))
     });
     let largest = most.map_or(0.0, |element| element.plastic_strain);
-    let top = shape.plastic_strain_max.unwrap_or(largest);
-    let top = if top > 0.0 { top } else { 1e-3 };
+    let top = if largest > 0.0 { largest } else { NO_STRAIN };
     let main = main_frame(shape)?;
-    let close_up = match (shape.view, most) {
-        (View::Whole, Some(element)) => Some(close_up_frame(element, &main)),
-        _ => None,
-    };
+    let side = CLOSE_UP_SIDE * shape.sheet[1];
+    let close_up = most.map(|element| close_up_frame(element, side, &main));
     let right = close_up.map_or(main.right, |frame| frame.right);
     render(right + 130.0, main.bottom + BELOW, |canvas| {
         canvas.text(
@@ -104,22 +101,22 @@ pub fn shape_svg(shape: &Shape) -> Result<String, String> {
 /// The part of the plane shown, at the same scale in both directions.
 fn main_frame(shape: &Shape) -> Result<Frame, String> {
     let nodes = || shape.elements.iter().flat_map(|element| element.nodes);
-    let (x, y, width) = match shape.view {
-        View::Window([x0, x1, y0, y1]) => ((x0, x1), (y0, y1), 860.0),
-        View::Whole => {
-            let right = nodes().map(|[x, _]| x).fold(60.0, f64::max) + 5.0;
-            let low = nodes()
-                .chain(shape.die.iter().copied())
-                .map(|[_, y]| y)
-                .fold(0.0, f64::min);
-            let high = nodes().map(|[_, y]| y).fold(12.0, f64::max);
-            ((-right, right), (low - 6.0, high + 6.0), 780.0)
-        }
-    };
+    let [half_length, _] = shape.sheet;
+    let right = nodes().map(|[x, _]| x).fold(half_length, f64::max);
+    let low = nodes()
+        .chain(shape.die.iter().copied())
+        .map(|[_, y]| y)
+        .fold(0.0, f64::min);
+    let high = nodes()
+        .map(|[_, y]| y)
+        .fold(half_length / HEADROOM, f64::max);
+    let right = right + half_length / MARGIN_ACROSS;
+    let margin = half_length / MARGIN_UP;
+    let (x, y) = ((-right, right), (low - margin, high + margin));
     if !(x.1 > x.0 && y.1 > y.0) {
         return Err(format!("the window {x:?} x {y:?} is empty"));
     }
-    let scale = f64::min(width / (x.1 - x.0), 700.0 / (y.1 - y.0));
+    let scale = f64::min(WIDTH / (x.1 - x.0), MOST_HEIGHT / (y.1 - y.0));
     let (right, bottom) = (LEFT + scale * (x.1 - x.0), TOP + scale * (y.1 - y.0));
     Ok(Frame {
         left: LEFT,
@@ -132,9 +129,9 @@ fn main_frame(shape: &Shape) -> Result<Frame, String> {
 }
 
 /// A square to the right of the main frame, as high as it, around an element.
-fn close_up_frame(element: &DeformedElement, main: &Frame) -> Frame {
+fn close_up_frame(element: &DeformedElement, side: f64, main: &Frame) -> Frame {
     let mean = |d: usize| element.nodes.iter().map(|node| node[d]).sum::<f64>() / 8.0;
-    let around = |value: f64| (value - 0.5 * CLOSE_UP_SIDE, value + 0.5 * CLOSE_UP_SIDE);
+    let around = |value: f64| (value - 0.5 * side, value + 0.5 * side);
     let left = main.right + 28.0;
     let right = left + main.bottom - main.top;
     Frame {
@@ -165,7 +162,8 @@ fn captions(canvas: &Canvas, main: &Frame, close_up: &Frame, shape: &Shape) -> R
     } else {
         ""
     };
-    let caption = format!("close-up, {CLOSE_UP_SIDE:.0} mm wide{place}");
+    let side = number(close_up.x.1 - close_up.x.0);
+    let caption = format!("close-up, {side} mm wide{place}");
     canvas.text(
         (close_up.left, above),
         &caption,

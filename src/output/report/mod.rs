@@ -12,6 +12,7 @@ use serde_json::Value;
 
 use super::{OutputDir, OutputError, StepRecord, Summary, atomic};
 use crate::case::{Case, ReferenceForce};
+use crate::text::rounded;
 use states::States;
 
 const PAGE: &str = include_str!("page/report.html");
@@ -23,6 +24,9 @@ const SCRIPTS: [&str; 5] = [
     include_str!("page/tables.js"),
     include_str!("page/page.js"),
 ];
+
+/// Significant digits of the numbers in the page.
+const DIGITS: usize = 7;
 
 /// What the page shows besides the field files.
 pub struct Report<'a> {
@@ -39,6 +43,7 @@ pub struct Report<'a> {
 /// What the script reads.
 #[derive(Serialize)]
 struct Data<'a> {
+    headline: String,
     summary: &'a Summary,
     history: BTreeMap<String, Vec<Value>>,
     model: Model,
@@ -71,6 +76,7 @@ impl Report<'_> {
     pub fn write(&self, folder: &OutputDir) -> Result<(), OutputError> {
         let path = folder.report();
         let data = Data {
+            headline: self.summary.headline(),
             summary: self.summary,
             history: columns(self.records),
             model: self.model(),
@@ -130,18 +136,13 @@ fn columns(records: &[StepRecord]) -> BTreeMap<String, Vec<Value>> {
         };
         for (name, value) in row {
             let short = match value.as_f64() {
-                Some(number) if value.is_f64() => Value::from(rounded(number)),
+                Some(number) if value.is_f64() => Value::from(rounded(number, DIGITS)),
                 _ => value,
             };
             columns.entry(name).or_default().push(short);
         }
     }
     columns
-}
-
-/// Seven significant digits.
-fn rounded(number: f64) -> f64 {
-    format!("{number:.6e}").parse().unwrap_or(number)
 }
 
 #[cfg(test)]

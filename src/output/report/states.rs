@@ -59,7 +59,7 @@ struct Contact {
     points: String,
     /// Pressure and friction (MPa), and x, y (mm): 32-bit floats.
     values: String,
-    /// 1 sticks, 2 slips.
+    /// State of each of them, as in the file: 1 stick, 2 slip forward, 3 slip backward.
     status: Vec<i32>,
 }
 

@@ -8,11 +8,13 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::{Communicator, Root};
+use mpi::traits::Communicator;
 
-use super::RunError;
+use super::error::{RestartError, RunError};
 use crate::case::{Case, Difference, Restart};
+use crate::material::Hardening;
 use crate::output::{Arrays, OutputError, agree, checkpoint};
+use crate::ranks::broadcast_bytes;
 use crate::system::System;
 
 pub(super) use state::RunState;
@@ -73,30 +75,6 @@ impl Resumed {
             mine.ok_or(OutputError::Checkpoint { path, reason }),
         )
     }
-}
-
-/// Why there is nothing to go on from.
-#[derive(Debug, thiserror::Error)]
-pub enum RestartError {
-    /// No checkpoint in the output folder.
-    #[error(
-        "-restart: there is no checkpoint in {}; run without -restart, or give the path of a checkpoint", folder.display()
-    )]
-    None {
-        /// The folder.
-        folder: PathBuf,
-    },
-    /// The checkpoint belongs to another problem.
-    #[error(
-        "-restart: the checkpoint {} belongs to another problem ({differences}); give the same options, or run without \
-         -restart", path.display()
-    )]
-    OtherProblem {
-        /// The checkpoint.
-        path: PathBuf,
-        /// The options that differ.
-        differences: String,
-    },
 }
 
 /// The checkpoint the case asks for, if it asks for one. Rank 0 chooses and checks, every rank reads. Collective.
@@ -160,13 +138,9 @@ fn first_whole(candidates: &[PathBuf]) -> Result<Choice, OutputError> {
     first_error.map_or(Ok(choice), Err)
 }
 
+/// Rank 0's text on every rank. Collective.
 fn broadcast(comm: &SimpleCommunicator, text: &mut String) {
-    let root = comm.process_at_rank(0);
-    let mut length = text.len() as u64;
-    root.broadcast_into(&mut length);
-    let mut bytes = std::mem::take(text).into_bytes();
-    bytes.resize(length as usize, 0);
-    root.broadcast_into(&mut bytes[..]);
+    let bytes = broadcast_bytes(comm, 0, std::mem::take(text).into_bytes());
     *text = String::from_utf8_lossy(&bytes).into_owned();
 }
 
@@ -178,7 +152,10 @@ pub(super) fn hardening_checksum(case: &Case) -> u32 {
 /// Refuses the checkpoint of another problem; tells what else is not as it was.
 fn compare(case: &Case, path: &Path, state: &RunState) -> Result<Vec<String>, RestartError> {
     let (mut problem, way) = case.differences_from_saved(&state.options);
-    if state.hardening != hardening_checksum(case) {
+    // The constants of other laws are options, so differences in them are known already.
+    let tables = matches!(case.material.hardening, Hardening::Table(_))
+        && !problem.iter().any(|known| known.option == "hardening");
+    if tables && state.hardening != hardening_checksum(case) {
         let path = |path: Option<&String>| format!("the curve of {}", path.map_or("?", |p| p));
         problem.push(Difference {
             option: "hardening_file",

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::super::simulation::Counts;
-use super::super::springback::Springback;
 use crate::output::{Arrays, OutputError};
+use crate::run::ledger::Counts;
+use crate::run::springback::Springback;
 use crate::system::Snapshot;
 
 /// A run after an accepted step. Vectors are in mesh order, see [`Snapshot`].

@@ -1,8 +1,9 @@
 //! The opening angles of a run.
 
 use crate::case::Case;
-use crate::output::{StepRecord, number};
-use crate::run::Outcome;
+use crate::output::StepRecord;
+use crate::run::outcome::Outcome;
+use crate::text::number;
 
 /// An angle of the run, with a name that says how the tools went away.
 pub(super) struct NamedAngle {

@@ -2,34 +2,29 @@
 
 use super::angles::angles;
 use crate::case::Case;
-use crate::output::monitor::{failed_banner, finished_banner, interrupted_banner};
-use crate::output::{Diagnosis, VerdictTable};
-use crate::run::{Interruption, Outcome};
+use crate::output::banner::banner;
+use crate::output::{Diagnosis, Summary};
+use crate::run::outcome::Outcome;
+use crate::run::simulation::Interruption;
 
-/// Of one that came to its end.
-pub(super) fn finished(
-    case: &Case,
-    outcome: &Outcome,
-    verdicts: &VerdictTable,
-    notes: &[String],
-) -> String {
-    let title = match verdicts.failures() {
-        0 => "every verdict holds".to_owned(),
-        1 => "but 1 verdict does not hold".to_owned(),
-        count => format!("but {count} verdicts do not hold"),
-    };
-    let mut facts = named("note", notes);
+/// The banner of a run: how it ended, where and why if it did not finish, what can be done, and what it took.
+pub(super) fn last_words(case: &Case, summary: &Summary, outcome: &Outcome) -> String {
+    let mut facts = Vec::new();
+    if let Some(diagnosis) = &summary.diagnosis {
+        facts.extend(failed(diagnosis, outcome));
+    }
+    if let Some(stop) = &outcome.interruption {
+        facts.extend(interrupted(case, stop, outcome));
+    }
+    facts.extend(named("note", &summary.notes));
     facts.extend(effort(case, outcome));
-    finished_banner(&title, &facts)
+    banner(summary.status, &summary.headline(), &facts)
 }
 
-/// Of one that was ended on request.
-pub(super) fn interrupted(
-    case: &Case,
-    stop: &Interruption,
-    outcome: &Outcome,
-    notes: &[String],
-) -> String {
+/// A fact of the banner: its name, and what is to be said.
+type Fact = (&'static str, String);
+
+fn interrupted(case: &Case, stop: &Interruption, outcome: &Outcome) -> [Fact; 3] {
     let place = format!(
         "after step {}, t = {:.4} ms, punch down by {:.4} mm",
         outcome.counts.steps,
@@ -40,19 +35,19 @@ pub(super) fn interrupted(
         "the same options with -restart, from {}",
         stop.checkpoint.display()
     );
-    let mut facts = named("note", notes);
-    facts.extend(effort(case, outcome));
-    interrupted_banner(&place, &stop.cause.sentence(), &resume, &facts)
+    [
+        ("where", place),
+        ("why", stop.cause.sentence()),
+        ("resume", resume),
+    ]
 }
 
-/// Of one that could not be solved to its end.
-pub(super) fn failed(
-    case: &Case,
-    diagnosis: &Diagnosis,
-    outcome: &Outcome,
-    notes: &[String],
-) -> String {
-    let mut facts = named("seen", &diagnosis.observed);
+fn failed(diagnosis: &Diagnosis, outcome: &Outcome) -> Vec<Fact> {
+    let mut facts = vec![
+        ("where", diagnosis.place.clone()),
+        ("why", diagnosis.cause.clone()),
+    ];
+    facts.extend(named("seen", &diagnosis.observed));
     facts.extend(named("tried", &diagnosis.tried));
     facts.extend(named("try", &diagnosis.remedies));
     if let Some(path) = outcome.failure.as_ref().and_then(|f| f.checkpoint.as_ref()) {
@@ -63,12 +58,10 @@ pub(super) fn failed(
         "read",
         "docs/it-does-not-converge.md, and report.html beside the results".to_owned(),
     ));
-    facts.extend(named("note", notes));
-    facts.extend(effort(case, outcome));
-    failed_banner(&diagnosis.place, &diagnosis.cause, &facts)
+    facts
 }
 
-fn effort(case: &Case, outcome: &Outcome) -> Vec<(&'static str, String)> {
+fn effort(case: &Case, outcome: &Outcome) -> Vec<Fact> {
     let counts = &outcome.counts;
     let angles = angles(case, outcome)
         .into_iter()
@@ -109,8 +102,8 @@ fn effort(case: &Case, outcome: &Outcome) -> Vec<(&'static str, String)> {
     facts
 }
 
-/// The same name before each line; none before one that tells of others left out.
-fn named(name: &'static str, lines: &[String]) -> Vec<(&'static str, String)> {
+/// The same name before each line; none before one that stands for others.
+fn named(name: &'static str, lines: &[String]) -> Vec<Fact> {
     let shown = |line: &String| if line.starts_with("...") { "" } else { name };
     lines
         .iter()

@@ -2,15 +2,15 @@
 
 use crate::case::{self, Case, Instant, Origin, ReferenceValue};
 use crate::output::{StepRecord, Tolerance, VerdictRow, VerdictTable};
-use crate::run::RunError;
+use crate::run::error::RunError;
 use crate::run::ledger::LEAST_FORCE;
 
 /// Largest share by which punch force may differ from die force and inertia.
 pub(super) const BALANCE_LIMIT: f64 = 1e-6;
 /// Largest excess of friction as a share of the largest friction possible.
 pub(super) const CONE_LIMIT: f64 = 1e-6;
-/// Largest pull of a contact point as a share of the punch force: what the residual's tolerance leaves.
-pub(super) const PULL_LIMIT: f64 = 1e-6;
+/// Largest tensile force of a contact point as a share of the punch force: what the residual's tolerance leaves.
+pub(super) const TENSION_LIMIT: f64 = 1e-6;
 
 /// The certificate's limits for every run that got anywhere, and the reference values where the
 /// case is the one they belong to.
@@ -69,9 +69,9 @@ pub(super) fn judge(
         "mm",
     );
     limit(
-        "strongest pull of a contact point, of the punch force",
+        "largest tensile force of a contact point, of the punch force",
         worst(|r| -r.min_contact_force_N / r.force_N.max(LEAST_FORCE)),
-        PULL_LIMIT,
+        TENSION_LIMIT,
         "1",
     );
     let imbalance = worst(|r| r.balance_error.abs());

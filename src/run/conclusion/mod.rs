@@ -10,10 +10,12 @@ mod summary;
 use mpi::traits::Communicator;
 use petsc::Session;
 
+use super::error::RunError;
+use super::outcome::Outcome;
 use super::setup::unread;
-use super::{Outcome, RunError};
 use crate::case::Case;
 use crate::output::Report;
+use crate::output::summary::Status;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +41,7 @@ pub fn conclude(
     let to_the_end = outcome.failure.is_none() && outcome.interruption.is_none();
     let verdicts = judgement::judge(case, outcome.recorder.records(), to_the_end)?;
     let reference = case.reference_force()?;
-    let summary = summary::summarise(case, &outcome, session, comm, verdicts.clone());
+    let summary = summary::summarise(case, &outcome, session, comm, verdicts.clone())?;
     if comm.rank() == 0 {
         summary.write(outcome.recorder.folder().summary())?;
         outcome.recorder.force_figure(&reference)?;
@@ -50,29 +52,7 @@ pub fn conclude(
         format!("\n{}\n", verdicts.text())
     };
     text.push_str(&unread::warnings()?);
-    let (banner, ending) = match (&summary.diagnosis, &outcome.interruption) {
-        (Some(diagnosis), _) => (
-            banner::failed(case, diagnosis, &outcome, &summary.notes),
-            Ending::DoesNotHold,
-        ),
-        (None, Some(stop)) => (
-            banner::interrupted(case, stop, &outcome, &summary.notes),
-            Ending::Interrupted,
-        ),
-        (None, None) => {
-            let holds = verdicts.failures() == 0;
-            let ending = if holds {
-                Ending::Holds
-            } else {
-                Ending::DoesNotHold
-            };
-            (
-                banner::finished(case, &outcome, &verdicts, &summary.notes),
-                ending,
-            )
-        }
-    };
-    text.push_str(&banner);
+    text.push_str(&banner::last_words(case, &summary, &outcome));
     outcome.recorder.show(&text);
     // The page is made from the files of the run, which all ranks must have closed.
     let (folder, records) = outcome.recorder.close();
@@ -85,5 +65,9 @@ pub fn conclude(
         };
         report.write(&folder)?;
     }
-    Ok(ending)
+    Ok(match summary.status {
+        Status::Interrupted => Ending::Interrupted,
+        Status::Finished if verdicts.failures() == 0 => Ending::Holds,
+        Status::Finished | Status::NotConverged => Ending::DoesNotHold,
+    })
 }

@@ -7,27 +7,26 @@ use petsc::Session;
 
 use super::angles::{NamedAngle, angles};
 use super::inputs;
-use super::judgement::{BALANCE_LIMIT, CONE_LIMIT, PULL_LIMIT};
-use crate::case::Case;
+use super::judgement::{BALANCE_LIMIT, CONE_LIMIT, TENSION_LIMIT};
+use crate::case::{Case, CaseError};
 use crate::output::VerdictTable;
-use crate::output::summary::{Certificates, Counts, Provenance, Status, Summary, Timing};
-use crate::run::Outcome;
+use crate::output::summary::{Counts, Provenance, Status, Summary, Timing, worst_values};
 use crate::run::diagnosis::{diagnose, notes};
+use crate::run::outcome::Outcome;
 use crate::run::setup::blas::Blas;
 
 /// The summary of an outcome and its verdicts.
+///
+/// # Errors
+/// None unless the table of options is broken, which the tests exclude.
 pub(super) fn summarise(
     case: &Case,
     outcome: &Outcome,
     session: &Session,
     comm: &impl Communicator,
     verdicts: VerdictTable,
-) -> Summary {
+) -> Result<Summary, CaseError> {
     let records = outcome.recorder.records();
-    let mut certificates = Certificates::default();
-    records
-        .iter()
-        .for_each(|record| certificates.observe(record));
     let (status, reason) = match (&outcome.failure, &outcome.interruption) {
         (Some(failure), _) => (Status::NotConverged, Some(failure.sentence())),
         (None, Some(stop)) => (Status::Interrupted, Some(stop.sentence())),
@@ -39,13 +38,14 @@ pub(super) fn summarise(
         let pair = |angle: &NamedAngle| (angle.name.clone(), value(angle));
         angles.iter().map(pair).collect()
     };
-    Summary {
+    Ok(Summary {
         status,
         reason,
         diagnosis: outcome
             .failure
             .as_ref()
-            .map(|failure| diagnose(case, failure, outcome.counts.steps)),
+            .map(|failure| diagnose(case, failure, outcome.counts.steps))
+            .transpose()?,
         notes: notes(case, records),
         last: records.last().copied(),
         angles_deg: by_name(|angle| angle.degrees),
@@ -62,11 +62,11 @@ pub(super) fn summarise(
                 text("penetration_mm"),
                 case.discretisation.penetration_limit,
             ),
-            (text("pull"), PULL_LIMIT),
+            (text("tensile_force"), TENSION_LIMIT),
             (text("balance"), BALANCE_LIMIT),
             (text("cone"), CONE_LIMIT),
         ]),
-        worst: certificates.worst(),
+        worst: worst_values(records),
         verdicts,
         provenance: Provenance {
             version: text(env!("CARGO_PKG_VERSION")),
@@ -96,5 +96,5 @@ pub(super) fn summarise(
             cpu_s: outcome.cpu_seconds,
             wall_s: outcome.wall_seconds,
         },
-    }
+    })
 }

@@ -4,10 +4,14 @@ use std::fmt;
 
 use petsc::SnesReason;
 
-use super::solve_watch::{Course, Flip, SolveWatch};
+use super::residual_history::ResidualHistory;
+use super::solve_watch::{Chattering, SolveWatch};
 use crate::mesh::SurfaceSide;
-use crate::output::number;
 use crate::system::{ContactPlace, FailedElement, System};
+use crate::text::number;
+
+/// Every way in which a contact point can chatter; the place in this list marks it among the ranks.
+const KINDS: [Chattering; 2] = [Chattering::OpenClose, Chattering::StickSlip];
 
 /// A Newton solve that did not converge. The same on every rank.
 #[derive(Clone, Debug)]
@@ -22,10 +26,10 @@ pub struct Refusal {
     pub iterations: u32,
     /// Residual norms, mm.
     pub norms: Vec<f64>,
-    /// How they went.
-    pub course: Course,
-    /// Contact points that flip between iterations.
-    pub flips: Vec<(ContactPlace, Flip)>,
+    /// How they developed.
+    pub history: ResidualHistory,
+    /// Contact points that chatter.
+    pub chattering: Vec<(ContactPlace, Chattering)>,
     /// The element that could not be evaluated, if any.
     pub element: Option<FailedElement>,
 }
@@ -40,11 +44,10 @@ impl Refusal {
         iterations: u32,
         tolerance: f64,
     ) -> Self {
-        const MARKS: [Flip; 2] = [Flip::Closing, Flip::Slipping];
-        let marked = |flip| u8::from(flip == Flip::Slipping);
+        let mark = |kind| u8::from(kind == KINDS[1]);
         let mine: Vec<_> = watch
-            .flips()
-            .map(|(point, flip)| (point, marked(flip)))
+            .chattering()
+            .map(|(point, kind)| (point, mark(kind)))
             .collect();
         let places = system.share_places(&mine);
         Self {
@@ -53,10 +56,10 @@ impl Refusal {
             reason,
             iterations,
             norms: watch.norms().to_vec(),
-            course: Course::of(watch.norms(), tolerance),
-            flips: places
+            history: ResidualHistory::of(watch.norms(), tolerance),
+            chattering: places
                 .into_iter()
-                .map(|place| (place, MARKS[usize::from(place.mark)]))
+                .map(|place| (place, KINDS[usize::from(place.mark)]))
                 .collect(),
             element: system.take_shared_failure(),
         }
@@ -67,39 +70,39 @@ impl Refusal {
         self.reason == SnesReason::DivergedIterations && self.element.is_none()
     }
 
-    /// The points that flip in one way, in words; nothing if there are none.
-    pub fn flips_in_words(&self, kind: Flip) -> Option<String> {
+    /// The points that chatter in one way and where they are, in words; nothing if there are none.
+    pub fn chattering_in_words(&self, kind: Chattering) -> Option<String> {
         let how = match kind {
-            Flip::Closing => "open and close",
-            Flip::Slipping => "stick and slip",
-        };
-        let of_face = |side: SurfaceSide, tool: &str| {
-            let flips = self
-                .flips
-                .iter()
-                .filter(|(place, flip)| *flip == kind && place.side == side);
-            let places: Vec<f64> = flips.map(|(place, _)| place.along).collect();
-            let (first, last) = (places.first()?, places.last()?);
-            let range = if places.len() == 1 {
-                format!("{first:.2} mm")
-            } else {
-                format!("{first:.2} to {last:.2} mm")
-            };
-            Some(
-                format!("{} under the {tool} at {range}", places.len())
-                    .replace("under the die", "on the die"),
-            )
+            Chattering::OpenClose => "open and close",
+            Chattering::StickSlip => "stick and slip",
         };
         let faces = [
-            of_face(SurfaceSide::Top, "punch"),
-            of_face(SurfaceSide::Bottom, "die"),
+            (SurfaceSide::Top, "under the punch"),
+            (SurfaceSide::Bottom, "on the die"),
         ];
-        let faces: Vec<String> = faces.into_iter().flatten().collect();
+        let faces: Vec<String> = faces
+            .into_iter()
+            .filter_map(|(side, place)| self.range_of(kind, side, place))
+            .collect();
         (!faces.is_empty()).then(|| {
             format!(
                 "contact points {how} between iterations: {} along the sheet",
                 faces.join(", ")
             )
+        })
+    }
+
+    /// Number and range of the points of one face that chatter in one way.
+    fn range_of(&self, kind: Chattering, side: SurfaceSide, place: &str) -> Option<String> {
+        let points = self
+            .chattering
+            .iter()
+            .filter(|(point, how)| *how == kind && point.side == side);
+        let along: Vec<f64> = points.map(|(point, _)| point.along).collect();
+        let (first, last) = (along.first()?, along.last()?);
+        Some(match along.len() {
+            1 => format!("1 {place} at {first:.2} mm"),
+            count => format!("{count} {place} at {first:.2} to {last:.2} mm"),
         })
     }
 
@@ -112,13 +115,12 @@ impl Refusal {
                 element.element, element.position[0], element.position[1], element.cause
             ));
         } else {
-            seen.push(format!("the residual {}", self.course.words(&self.norms)));
+            seen.push(format!("the residual {}", self.history.words(&self.norms)));
         }
-        let flips = [Flip::Closing, Flip::Slipping];
         seen.extend(
-            flips
+            KINDS
                 .into_iter()
-                .filter_map(|kind| self.flips_in_words(kind)),
+                .filter_map(|kind| self.chattering_in_words(kind)),
         );
         seen
     }

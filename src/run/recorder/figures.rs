@@ -1,65 +1,37 @@
-//! The figures of a run: deformed shapes, and force against stroke.
+//! The figures of the sheet and the tools, from the model to the files.
 
 use std::sync::Arc;
 
-use super::{Recorder, field_sample};
-use crate::case::ReferenceForce;
-use crate::output::plot::{self, DeformedElement, Shape, View, gather_elements};
-use crate::output::{FieldSample, OutputError};
-use crate::system::{NodeSample, Problem, System, Tool};
+use crate::output::plot::{self, DeformedElement, Shape};
+use crate::output::{OutputDir, OutputError};
+use crate::system::{Problem, Tool};
 
 /// Spacing of the points of the drawn tools, mm: a figure is looked at closer than the fields.
 const TOOL_SPACING: f64 = 0.05;
 
-impl Recorder {
-    /// Draws the deformed sheet between the tools at time `t` (ms), under the name `label`. Collective.
-    ///
-    /// # Errors
-    /// If the figure cannot be written.
-    pub fn shape(
-        &self,
-        label: &str,
-        t: f64,
-        nodes: &[NodeSample],
-        system: &System,
-    ) -> Result<(), OutputError> {
-        let samples: Vec<FieldSample> = nodes.iter().map(field_sample).collect();
-        let elements = gather_elements(system.comm(), &DeformedElement::of(&self.part, &samples));
-        if self.history.is_none() {
-            return Ok(());
-        }
-        let local = system.local();
-        let problem = local.problem();
-        let depth = self.motion.depth(t);
-        let (die, punch) = right_halves(problem);
-        let figure = Shape {
-            title: &format!("{label}: punch down by {depth:.2} mm"),
-            elements: &elements,
-            die: &die,
-            punch: &punch,
-            stroke_mm: depth,
-            plastic_strain_max: None,
-            view: View::Whole,
-        };
-        let name = format!("shape-{}.svg", label.replace(' ', "-"));
-        plot::shape(self.folder.file(&name), &figure)
-    }
-
-    /// Draws force against stroke beside the reference, on rank 0.
-    ///
-    /// # Errors
-    /// If the figure cannot be written.
-    pub fn force_figure(&self, reference: &ReferenceForce) -> Result<(), OutputError> {
-        if self.history.is_none() || self.records.is_empty() {
-            return Ok(());
-        }
-        plot::force(
-            self.folder.force_figure(),
-            "Force of the punch, whole sheet",
-            &self.records,
-            reference,
-        )
-    }
+/// Draws the deformed sheet between the tools with the punch down by `depth` (mm), under the name `label`.
+///
+/// # Errors
+/// If the figure cannot be written.
+pub(super) fn shape(
+    folder: &OutputDir,
+    label: &str,
+    depth: f64,
+    elements: &[DeformedElement],
+    problem: &Problem,
+) -> Result<(), OutputError> {
+    let (die, punch) = right_halves(problem);
+    let nodes = &problem.mesh.nodes;
+    let sheet = [0, 1].map(|k| nodes.iter().map(|x| x[k]).fold(0.0, f64::max));
+    let figure = Shape {
+        title: &format!("{label}: punch down by {depth:.2} mm"),
+        elements,
+        die: &die,
+        punch: &punch,
+        stroke_mm: depth,
+        sheet,
+    };
+    plot::shape(folder.shape_figure(label), &figure)
 }
 
 /// The right halves of die and punch in their first positions, from the axis outwards, mm.

@@ -10,12 +10,12 @@ use std::path::{Path, PathBuf};
 use mpi::traits::Communicator;
 
 use super::checkpoint::{Resumed, RunState, STATE};
-use crate::case::Case;
-use crate::contact::ContactState;
+use crate::case::{Case, ReferenceForce};
 use crate::output::folder::{CONTACT, FIELDS, HISTORY, TOOLS};
+use crate::output::plot::{self, DeformedElement, gather_elements};
 use crate::output::{
-    Arrays, ContactFile, ContactSample, FieldSample, History, Monitor, OutputDir, OutputError,
-    SheetFile, SheetPart, StepRecord, ToolsFile, agree, checkpoint, history,
+    Arrays, ContactFile, History, Monitor, OutputDir, OutputError, SheetFile, SheetPart,
+    StepRecord, ToolsFile, agree, checkpoint, history,
 };
 use crate::system::{NodeSample, System};
 use crate::tool::PunchMotion;
@@ -199,33 +199,44 @@ impl Recorder {
         system: &System,
         values: &[f64],
     ) -> Result<(), OutputError> {
-        let local = system.local();
-        let samples: Vec<FieldSample> = nodes.iter().map(field_sample).collect();
-        let points: Vec<ContactSample> = local
-            .contact_points(t, values)
-            .iter()
-            .map(|point| ContactSample {
-                displacement: point.displacement,
-                contact_pressure: point.pressure,
-                friction_traction: point.friction,
-                gap: point.gap,
-                contact_status: point.state.code(),
-            })
-            .collect();
-        self.sheet.write(t, &samples)?;
+        self.sheet.write(t, nodes)?;
         self.tools.write(t, self.motion.depth(t))?;
-        self.contact.write(t, &points)
+        self.contact
+            .write(t, &system.local().contact_points(t, values))
     }
-}
 
-fn field_sample(node: &NodeSample) -> FieldSample {
-    FieldSample {
-        displacement: node.displacement,
-        stress: node.stress,
-        von_mises_stress: node.von_mises_stress,
-        equivalent_plastic_strain: node.equivalent_plastic_strain,
-        contact_pressure: node.contact_pressure,
-        gap: node.gap,
-        contact_status: node.contact_state.map_or(-1, ContactState::code),
+    /// Draws the deformed sheet between the tools at time `t` (ms), under the name `label`. Collective.
+    ///
+    /// # Errors
+    /// If the figure cannot be written.
+    pub fn shape(
+        &self,
+        label: &str,
+        t: f64,
+        nodes: &[NodeSample],
+        system: &System,
+    ) -> Result<(), OutputError> {
+        let elements = gather_elements(system.comm(), &DeformedElement::of(&self.part, nodes));
+        if self.history.is_none() {
+            return Ok(());
+        }
+        let (depth, local) = (self.motion.depth(t), system.local());
+        figures::shape(&self.folder, label, depth, &elements, local.problem())
+    }
+
+    /// Draws force against stroke beside the reference, on rank 0.
+    ///
+    /// # Errors
+    /// If the figure cannot be written.
+    pub fn force_figure(&self, reference: &ReferenceForce) -> Result<(), OutputError> {
+        if self.history.is_none() || self.records.is_empty() {
+            return Ok(());
+        }
+        plot::force(
+            self.folder.force_figure(),
+            "Force of the punch, whole sheet",
+            &self.records,
+            reference,
+        )
     }
 }

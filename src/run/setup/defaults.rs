@@ -6,7 +6,7 @@ use petsc::Ts;
 use petsc::options::set_default;
 
 use crate::case::Case;
-use crate::run::RunError;
+use crate::run::error::RunError;
 
 /// By how much a step shrinks when its solve is refused.
 pub(in crate::run) const CUT_BACK: f64 = 0.4;

@@ -14,11 +14,10 @@ use petsc::{Alpha2State, Ts, TsReason, Vector};
 use super::RunError;
 use super::checkpoint::{Resumed, RunState, hardening_checksum};
 use super::diagnosis::{Refusal, SolveWatch};
-use super::ledger::Ledger;
+use super::ledger::{Counts, Ledger, Spent};
 use super::newton::{Damping, TangentInertia};
 use super::recorder::Recorder;
 use super::setup::{LinearSolve, defaults};
-use super::spent::Spent;
 use super::springback::Springback;
 use super::step_size::StepControl;
 use super::stop_watch::StopWatch;
@@ -72,17 +71,6 @@ pub(super) struct Simulation {
     /// What a checkpoint says about the case it belongs to.
     identity: RunState,
     interruption: RefCell<Option<Interruption>>,
-}
-
-/// Work done over the run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    /// Accepted steps.
-    pub steps: u64,
-    /// Solves refused.
-    pub refused: u64,
-    /// Newton iterations of all solves; each is one linear solve.
-    pub newton: u64,
 }
 
 /// How a simulation ended.

@@ -25,12 +25,12 @@ const states = (() => {
   };
 })();
 
-// How far the punch is down at time t, and the way it has gone, down and back.
+// How far the punch is down at time t, and how far it has travelled, down and back.
 function depth(t) {
   const back = Math.min(Math.max((t - model.time_load) / model.time_unload, 0), 1);
   return model.stroke * (Math.min(Math.max(t / model.time_load, 0), 1) - model.unload_fraction * back);
 }
-function way(t) { return t <= model.time_load ? depth(t) : 2 * model.stroke - depth(t); }
+function travel(t) { return t <= model.time_load ? depth(t) : 2 * model.stroke - depth(t); }
 
 // Position of node n in state s, mm.
 function place(s, n) {

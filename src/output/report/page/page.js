@@ -1,8 +1,10 @@
 // Puts the page together and keeps slider, pictures and cursors in step.
 const OURS = "#14559e", OURS_LIGHT = "#86b3df", THEIRS = "#c2571a";
-const times = column("t_ms"), ways = times.map(way), turnWay = model.unload_fraction > 0 ? model.stroke : undefined;
+const times = column("t_ms"), travels = times.map(travel), turnTravel = model.unload_fraction > 0 ? model.stroke : undefined;
 const stroke = column("stroke_mm");
-const wayRange = [0, Math.max(ways[ways.length - 1] || 0, 1e-3)];
+const travelRange = [0, Math.max(travels[travels.length - 1] || 0, 1e-3)];
+// Closed contact points by state 1, 2, 3. Forward is along the tool's outline: outwards on the die, inwards on the punch.
+const STATES = [["stick", "#1b2430"], ["slip forward", "#c2571a"], ["slip backward", "#8a4fa3"]];
 let pressureChart = null;
 
 function goTo(time) {
@@ -28,16 +30,17 @@ function setState(s) {
 }
 
 function drawPressure() {
-  const up = { x: [], y: [] }, low = { x: [], y: [] }, rub = { x: [], y: [] };
-  contacts(look.state, (x, y, upper, pressure, friction, along) => {
+  const up = { x: [], y: [] }, low = { x: [], y: [] }, friction = STATES.map(() => ({ x: [], y: [] }));
+  contacts(look.state, (x, y, upper, pressure, traction, along, state) => {
     const s = upper ? up : low; s.x.push(along); s.y.push(upper ? pressure : -pressure);
-    if (model.friction > 0) { rub.x.push(along); rub.y.push((upper ? 1 : -1) * Math.abs(friction)); }
+    const f = friction[state - 1];
+    if (model.friction > 0 && f) { f.x.push(along); f.y.push((upper ? 1 : -1) * Math.abs(traction)); }
   });
   const o = pressureChart.options;
   o.series = [
     { name: "punch side, shown upwards", color: PUNCH_MARK, kind: "stems", width: 2, ...up },
     { name: "die side, shown downwards", color: DIE_MARK, kind: "stems", width: 2, ...low },
-    ...(model.friction > 0 ? [{ name: "friction traction, its size", color: "#1b2430", kind: "marks", radius: 1.5, ...rub }] : []),
+    ...STATES.map(([name, color], k) => ({ name: `friction traction, ${name}`, color, kind: "marks", radius: 1.5, ...friction[k] })),
   ];
   const most = Math.max(10, ...up.y, ...low.y.map(v => -v)), step = ticks(0, most, 3)[1] || 10, end = Math.ceil(most / step) * step;
   o.yRange = [low.x.length ? -end : 0, up.x.length || !low.x.length ? end : 0];
@@ -64,21 +67,21 @@ function makeCharts() {
     : reference.points.length ? "Beside it the reference values of this case; their sources are in the table above." : "Nobody else's values are known for this case.";
   const energies = [["work of the punch", "external_work_mJ", "#1b2430"], ["plastic", "plastic_dissipation_mJ", "#c2571a"], ["elastic", "strain_energy_mJ", OURS], ["contact and friction", "contact_energy_mJ", "#1b7442"], ["kinetic", "kinetic_energy_mJ", "#8a4fa3"]];
   new Chart("energies", {
-    title: "Energies against the way of the punch", xLabel: "way of the punch, mm", yLabel: "energy of the whole sheet, mJ", height: 340, turn: turnWay, xRange: wayRange,
-    series: energies.map(([name, key, color], k) => ({ name, color, width: k ? 1.8 : 2.4, dash: k ? "" : "6 3", x: ways, y: column(key), time: times })),
+    title: "Energies against the travel of the punch", xLabel: "travel of the punch, mm", yLabel: "energy of the whole sheet, mJ", height: 340, turn: turnTravel, xRange: travelRange,
+    series: energies.map(([name, key, color], k) => ({ name, color, width: k ? 1.8 : 2.4, dash: k ? "" : "6 3", x: travels, y: column(key), time: times })),
     tip: (s, i) => `${s.name}: ${show(s.y[i])} mJ at ${fixed(s.x[i], 2)} mm`,
-    at: t => ({ x: way(t) }),
+    at: t => ({ x: travel(t) }),
   });
   const refused = column("refused_solves"), where = refused.map((n, i) => n > 0 ? i : -1).filter(i => i >= 0), pick = list => where.map(i => list[i]);
-  const marks = list => ({ name: "after refused solves", color: PUNCH_MARK, kind: "marks", radius: 3.4, x: pick(ways), y: pick(list), time: pick(times), of: pick(refused) });
+  const marks = list => ({ name: "after refused solves", color: PUNCH_MARK, kind: "marks", radius: 3.4, x: pick(travels), y: pick(list), time: pick(times), of: pick(refused) });
   const tip = unit => (s, i) => `${fixed(s.x[i], 2)} mm: ${show(s.y[i])} ${unit}${s.of ? `, ${s.of[i]} refused before` : ""}`;
   const dt = column("dt_ms"), newton = column("newton_iterations");
-  new Chart("steps", { title: "Step size", xLabel: "way of the punch, mm", yLabel: "step, ms", log: true, height: 270, turn: turnWay, xRange: wayRange, tip: tip("ms"),
-    series: [{ name: "step", color: OURS, width: 1.8, x: ways, y: dt, time: times }, marks(dt)], at: (t, row) => ({ x: way(t), y: row >= 0 ? dt[row] : NaN }) });
+  new Chart("steps", { title: "Step size", xLabel: "travel of the punch, mm", yLabel: "step, ms", log: true, height: 270, turn: turnTravel, xRange: travelRange, tip: tip("ms"),
+    series: [{ name: "step", color: OURS, width: 1.8, x: travels, y: dt, time: times }, marks(dt)], at: (t, row) => ({ x: travel(t), y: row >= 0 ? dt[row] : NaN }) });
   const total = refused.reduce((a, b) => a + b, 0), open = summary.counts.refused_solves - total;
   document.getElementById("steps-caption").textContent = `Red: steps that were accepted after ${total} refused solves altogether.${open > 0 ? ` ${open} more solves were refused where the run ended.` : ""}`;
-  new Chart("newton", { title: "Newton iterations", xLabel: "way of the punch, mm", yLabel: "iterations of the step", height: 270, turn: turnWay, xRange: wayRange, tip: tip("iterations"),
-    series: [{ name: "iterations", color: OURS, kind: "stems", x: ways, y: newton, time: times }, marks(newton)], at: (t, row) => ({ x: way(t), y: row >= 0 ? newton[row] : NaN }) });
+  new Chart("newton", { title: "Newton iterations", xLabel: "travel of the punch, mm", yLabel: "iterations of the step", height: 270, turn: turnTravel, xRange: travelRange, tip: tip("iterations"),
+    series: [{ name: "iterations", color: OURS, kind: "stems", x: travels, y: newton, time: times }, marks(newton)], at: (t, row) => ({ x: travel(t), y: row >= 0 ? newton[row] : NaN }) });
   pressureChart = new Chart("pressure", { title: "Contact pressure along the sheet", xLabel: "place along the undeformed sheet from its middle, mm", yLabel: "pressure, MPa", height: 250, xRange: [0, model.half_length], series: [],
     tip: (s, i) => `${fixed(s.x[i], 3)} mm: ${fixed(Math.abs(s.y[i]), 1)} MPa`, yTick: v => show(Math.abs(v)) });
 }
@@ -102,6 +105,10 @@ header(); failure(); tiles(); verdictTable(); certificateTable(); angleTable(); 
 document.getElementById("thinned").textContent = states.count < states.saved
   ? `${states.count} of the ${states.saved} saved states are in this page, evenly chosen; positions and values are rounded to 1/65535 of their range.`
   : `All ${states.saved} saved states are in this page; positions and values are rounded to 1/65535 of their range.`;
+for (const width of [3, 6, 12].map(k => k * model.thickness)) {
+  const chosen = width === look.zoom ? { selected: "" } : {};
+  document.getElementById("zoom").append(element("option", { value: width, text: `${show(width)} mm`, ...chosen }));
+}
 const slider = document.getElementById("state"), stopPlaying = play();
 slider.max = states.count - 1;
 slider.addEventListener("input", () => { stopPlaying(); setState(Number(slider.value)); });

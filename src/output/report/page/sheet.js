@@ -7,13 +7,15 @@ const COLORS = (() => {
     return `rgb(${map[i].map((c, j) => Math.round(c + f * (map[i + 1][j] - c))).join(",")})`;
   });
 })();
+// Lengths of the pictures follow from the sheet: how far tools go on beyond it, and what is left free around it.
+const FAR = 10 * model.half_length, MARGIN = model.half_length / 20;
 const PUNCH_MARK = "#d0342c", DIE_MARK = "#2f7fd6";
 
 const outlines = (() => {
   const arc = (cx, cy, r, from, to) => Array.from({ length: 1501 }, (_, k) => { const a = from + (to - from) * k / 1500; return [cx + r * Math.cos(a), cy + r * Math.sin(a)]; });
   const { die_radius: R, shoulder_radius: r, punch_radius: p, thickness: h } = model, edge = R + r, q = Math.PI / 2;
-  const half = [...arc(0, -r, R, -q, 0), ...arc(edge, -r, r, 2 * q, q), [edge + 400, 0]];
-  const punch = [...arc(0, h + p, p, -q, 0), [p, h + p + 400]];
+  const half = [...arc(0, -r, R, -q, 0), ...arc(edge, -r, r, 2 * q, q), [edge + FAR, 0]];
+  const punch = [...arc(0, h + p, p, -q, 0), [p, h + p + FAR]];
   const whole = line => [...line.slice().reverse().map(([x, y]) => [-x, y]), ...line];
   return { die: whole(half), punch: whole(punch) };
 })();
@@ -29,7 +31,7 @@ const outline = (() => {
   return [...seen.values()].filter(([a, b]) => place(0, a)[0] > 1e-3 || place(0, b)[0] > 1e-3);
 })();
 
-const look = { state: 0, field: "strain", focus: "strain", zoom: 6, at: null };
+const look = { state: 0, field: "strain", focus: "strain", zoom: 6 * model.thickness, at: null };
 
 function valueAt(s, n) { const f = states.fields[look.field]; return f.top * f.values[s * states.nodes + n] / 65535; }
 
@@ -54,7 +56,7 @@ function scene(view, box, near) {
     c.lineTo(X(line[line.length - 1][0]), Y(level)); c.lineTo(X(line[0][0]), Y(level)); c.closePath();
     c.fillStyle = fill; c.fill(); c.strokeStyle = "#8b95a1"; c.lineWidth = 1.1; c.stroke();
   };
-  tool(outlines.die, 0, -500, "#dfe3e8"); tool(outlines.punch, down, 900, "#e9ecf0");
+  tool(outlines.die, 0, -FAR, "#dfe3e8"); tool(outlines.punch, down, 2 * FAR, "#e9ecf0");
   c.strokeStyle = "#aab4bf"; c.setLineDash([6, 4]); c.lineWidth = 1; c.beginPath(); c.moveTo(X(0), 0); c.lineTo(X(0), height); c.stroke(); c.setLineDash([]);
   const top = states.fields[look.field].top, n = states.corners, list = states.elements;
   const size = k * model.half_length / model.elements[0], edges = size > 9, pieces = edges ? Math.min(6, Math.max(1, Math.round(size / 10))) : 1;
@@ -106,7 +108,7 @@ function path(c, corner, n) {
   }
 }
 
-// Calls f(x, y, upper, pressure, friction, along, status) for each contact point that carries in state s.
+// Calls f(x, y, upper, pressure, friction, along, state of contact) for each contact point that carries a force in state s.
 function contacts(s, f) {
   const t = states.contact;
   for (let i = t.starts[s]; i < t.starts[s + 1]; i++) {
@@ -129,8 +131,8 @@ const lowest = (() => { let best = 0; for (let n = 1; n < states.nodes; n++) { c
 
 // The whole picture: the right half and a little of the left one, the same for all states.
 function wholeBox(width, height) {
-  const [, x1, y0, y1] = states.span, low = Math.min(y0, -model.die_radius - model.shoulder_radius) - 2.5, high = Math.max(y1, 12) + 3;
-  const left = -0.14 * x1, right = x1 + 3;
+  const [, x1, y0, y1] = states.span, low = Math.min(y0, -model.die_radius - model.shoulder_radius) - MARGIN, high = Math.max(y1, 4 * MARGIN) + MARGIN;
+  const left = -0.14 * x1, right = x1 + MARGIN;
   return [(left + right) / 2, (low + high) / 2, Math.max((right - left) / width, (high - low) / height)];
 }
 
@@ -155,11 +157,11 @@ function drawSheet(printing) {
   c.strokeStyle = "#b3123c"; c.lineWidth = 1.4;
   c.strokeRect(wholeView.X(fx - hw), wholeView.Y(fy + hh), 2 * hw * wholeView.k, 2 * hh * wholeView.k);
   c.fillStyle = "#55606e"; c.font = "13px sans-serif"; c.textAlign = "left";
-  c.fillText("die", wholeView.X(Math.min(model.die_radius + model.shoulder_radius + 3, box[0] + 0.4 * a.width * box[2])), a.height - 14);
+  c.fillText("die", wholeView.X(Math.min(model.die_radius + model.shoulder_radius + MARGIN, box[0] + 0.4 * a.width * box[2])), a.height - 14);
   const tip = model.thickness - depth(states.times[look.state]);
   if (wholeView.Y(tip) > 34) c.fillText("punch", wholeView.X(1.2), Math.max(wholeView.Y(tip + 0.6 * model.punch_radius), 22));
   bar(a, box); bar(b, close);
-  document.getElementById("near-caption").textContent = `Close-up, ${look.zoom} mm wide, framed in red on the left. Dots: contact points that carry.`;
+  document.getElementById("near-caption").textContent = `Close-up, ${show(look.zoom)} mm wide, framed in red on the left. Dots: contact points that carry a force.`;
   document.getElementById("whole-caption").textContent = "True shape, equal scales. Dashed: plane of symmetry. Click to move the close-up.";
   colorBar(printing);
 }

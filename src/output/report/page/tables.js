@@ -36,7 +36,7 @@ function verdictTable() {
 
 const CERTIFICATES = {
   max_penetration_mm: ["Deepest penetration, also between the contact points", "mm", "penetration_mm"],
-  min_contact_force_N: ["Strongest pull of a contact point (negative pulls)", "N", null],
+  min_contact_force_N: ["Smallest contact force of a point (negative: tensile)", "N", null],
   max_complementarity_mJ: ["Complementarity: force times open gap of a point", "mJ", null],
   cone_violation: ["Friction beyond its cone, of the largest", "", "cone"],
   balance_error: ["Punch force less die force and inertia, of the larger", "", "balance"],
@@ -51,7 +51,7 @@ function certificateTable() {
     const worst = summary.worst.find(w => w.certificate === name);
     if (!worst || (name === "cone_violation" && model.friction === 0)) continue;
     const bound = limit === null ? null : summary.tolerances[limit];
-    const text = name === "min_contact_force_N" ? `−${show(summary.tolerances.pull)} of the force` : bound === null || bound === undefined ? "none" : show(bound);
+    const text = name === "min_contact_force_N" ? `−${show(summary.tolerances.tensile_force)} of the force` : bound === null || bound === undefined ? "none" : show(bound);
     const failing = bound !== null && bound !== undefined && !(Math.abs(worst.value) <= bound * (1 + 1e-9));
     rows.push({ failing, cells: [words, show(worst.value, 3), text, unit, worst.step, fixed(depth(worst.t_ms), 2), show(column(name)[column(name).length - 1], 3)] });
   }
@@ -93,12 +93,10 @@ function header() {
   document.getElementById("title").textContent = "NAFEMS contact benchmark 3 · SSNP155";
   const differs = Object.entries(summary.provenance.options).filter(([n, v]) => data.defaults[n] !== v);
   document.getElementById("subtitle").textContent = `${model.friction > 0 ? `With friction, coefficient ${show(model.friction)}` : "Without friction"}; stroke ${show(model.stroke)} mm, `
-    + `${model.unload_fraction > 0 ? `${show(100 * model.unload_fraction)} % of it back` : "no way back"}; ${model.elements[0]} × ${model.elements[1]} quadratic elements`
+    + `${model.unload_fraction > 0 ? `${show(100 * model.unload_fraction)} % of it back` : "not taken back"}; ${model.elements[0]} × ${model.elements[1]} quadratic elements`
     + `${compared || !done ? "" : `. There are no reference values for this case${differs.length ? "" : ""}: only the certificate is judged`}.`;
   const status = document.getElementById("status");
-  const [kind, text] = summary.status === "interrupted" ? ["warn", `Interrupted: ${summary.reason}`]
-    : !done ? ["bad", "FAILED: the run did not finish"]
-    : failing ? ["warn", `Finished, but ${failing} verdict${failing > 1 ? "s do" : " does"} not hold`] : ["good", `Finished: all ${summary.verdicts.length} verdicts hold`];
+  const kind = summary.status === "not converged" ? "bad" : done && !failing ? "good" : "warn", text = data.headline;
   status.className = `status ${kind}`; status.textContent = text;
   document.title = `ssnp155: ${text.toLowerCase()}`;
 }

@@ -1,14 +1,14 @@
 //! Where everything lies in a VTKHDF file: groups, datasets and the table of steps.
 
-use hdf5::plist::dataset_create::FillTime;
 use hdf5::types::FixedAscii;
-use hdf5::{Attribute, Dataset, File, Group, H5Type};
+use hdf5::{Attribute, Dataset, File};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, CommunicatorCollectives};
 
-use super::hdf_collective::write_rows;
-use super::vtkhdf::{ArraySpec, Kind, Part, Values};
-use super::vtkhdf_steps::StepTable;
+use super::collective::write_rows;
+use super::datasets::{extendable, fixed, write_unit, write_values};
+use super::steps::StepTable;
+use super::types::{ArraySpec, Kind, Part, Values};
 
 /// What a new file gives the series: the point arrays, the step table and the counter of steps.
 pub(super) type Growing = (Vec<Dataset>, StepTable, Attribute);
@@ -156,69 +156,4 @@ impl Layout {
         }
         results.into_iter().collect()
     }
-}
-
-/// Sets the number of rows. Collective.
-pub(super) fn extend(dataset: &Dataset, rows: usize) -> Result<(), String> {
-    let mut shape = dataset.shape();
-    if let Some(first) = shape.first_mut() {
-        *first = rows;
-    }
-    dataset.resize(shape).map_err(|error| error.to_string())
-}
-
-/// Writes this rank's values from row `first_row` on. Collective.
-pub(super) fn write_values(
-    dataset: &Dataset,
-    first_row: usize,
-    values: &Values,
-) -> Result<(), String> {
-    match values {
-        Values::F64(values) => write_rows(dataset, first_row, values),
-        Values::I32(values) => write_rows(dataset, first_row, values),
-    }
-}
-
-/// A dataset without rows that can grow, in chunks of `rows`.
-pub(super) fn extendable<T: H5Type>(
-    group: &Group,
-    name: &str,
-    components: usize,
-    rows: usize,
-) -> hdf5::Result<Dataset> {
-    let builder = group.new_dataset::<T>();
-    // Every value is written right after the rows exist: filling them first would double the traffic.
-    if components == 1 {
-        builder
-            .chunk(rows)
-            .fill_time(FillTime::Never)
-            .shape(0..)
-            .create(name)
-    } else {
-        builder
-            .chunk((rows, components))
-            .fill_time(FillTime::Never)
-            .shape((0.., components))
-            .create(name)
-    }
-}
-
-fn fixed<T: H5Type>(group: &Group, spec: &ArraySpec, rows: usize) -> hdf5::Result<Dataset> {
-    if spec.components == 1 {
-        group.new_dataset::<T>().shape(rows).create(spec.name)
-    } else {
-        group
-            .new_dataset::<T>()
-            .shape((rows, spec.components))
-            .create(spec.name)
-    }
-}
-
-fn write_unit(dataset: &Dataset, spec: &ArraySpec) -> hdf5::Result<()> {
-    let unit =
-        FixedAscii::<16>::from_ascii(spec.unit.as_bytes()).map_err(|error| error.to_string())?;
-    dataset
-        .new_attr::<FixedAscii<16>>()
-        .create("unit")?
-        .write_scalar(&unit)
 }

@@ -3,9 +3,9 @@
 use hdf5::plist::dataset_create::FillTime;
 use hdf5::{Attribute, Dataset, Group, H5Type};
 
-use super::hdf_collective::write_rows;
-use super::vtkhdf::ArraySpec;
-use super::vtkhdf_layout::{extend, extendable};
+use super::collective::write_rows;
+use super::datasets::{extend, extendable};
+use super::types::ArraySpec;
 
 /// Steps per chunk of the step table: small enough to waste nothing, large enough for a whole run in a few chunks.
 const STEPS_PER_CHUNK: usize = 512;

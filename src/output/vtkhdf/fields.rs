@@ -1,14 +1,20 @@
 //! The three field files: sheet, tools and contact points, each a series over the accepted steps.
 //!
 //! Coordinates are those of the undeformed half model, x across and y up, in mm; show the deformed state with
-//! ParaView's "Warp By Vector" on `displacement`. All functions are collective over the communicator given.
+//! ParaView's "Warp By Vector" on `displacement`. All functions are collective over the communicator of the file.
+//!
+//! `contact_status` is 0 open, 1 stick, 2 slip forward, 3 slip backward ([`ContactState`]), and -1 at nodes that no tool
+//! can touch. Forward is along the tool's outline: outwards on the die, inwards on the punch.
 
 use std::path::Path;
 
 use mpi::traits::Communicator;
 
-use super::OutputError;
-use super::vtkhdf::{ArraySpec, CellType, Kind, Part, TimeSeries, Values};
+use super::series::TimeSeries;
+use super::types::{ArraySpec, CellType, Kind, Part, Values};
+use crate::contact::ContactState;
+use crate::output::OutputError;
+use crate::system::{ContactPointSample, NodeSample};
 
 const fn real(name: &'static str, unit: &'static str, components: usize) -> ArraySpec {
     ArraySpec {
@@ -32,6 +38,8 @@ const DISPLACEMENT: ArraySpec = real("displacement", "mm", 3);
 const CONTACT_PRESSURE: ArraySpec = real("contact_pressure", "MPa", 1);
 const GAP: ArraySpec = real("gap", "mm", 1);
 const CONTACT_STATUS: ArraySpec = integer("contact_status");
+/// `contact_status` of a node that no tool can touch.
+const CANNOT_TOUCH: i32 = -1;
 
 /// Point arrays of `fields.vtkhdf`, in this order. `stress` has VTK's six components of a symmetric tensor, which
 /// ParaView shows as XX, YY, ZZ, XY, YZ, XZ; the last two are 0 in plane strain.
@@ -67,40 +75,6 @@ pub struct SheetPart {
     pub quads: Vec<[usize; 8]>,
     /// The rank that owns these elements.
     pub rank: i32,
-}
-
-/// What is known at one node at one instant.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct FieldSample {
-    /// Displacement [x, y], mm.
-    pub displacement: [f64; 2],
-    /// Cauchy stress [xx, yy, zz, xy], MPa.
-    pub stress: [f64; 4],
-    /// Von Mises equivalent stress, MPa.
-    pub von_mises_stress: f64,
-    /// Equivalent plastic strain.
-    pub equivalent_plastic_strain: f64,
-    /// Contact pressure, MPa, positive in compression, 0 away from contact.
-    pub contact_pressure: f64,
-    /// Distance to the nearest tool, mm, positive when open; 0 at nodes that cannot touch.
-    pub gap: f64,
-    /// 0 open, 1 closed and sticking, 2 closed and sliding; -1 at nodes that cannot touch.
-    pub contact_status: i32,
-}
-
-/// What is known at one contact point at one instant.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct ContactSample {
-    /// Displacement [x, y], mm.
-    pub displacement: [f64; 2],
-    /// Contact pressure, MPa, positive in compression.
-    pub contact_pressure: f64,
-    /// Tangential traction on the sheet, MPa, 0 without friction.
-    pub friction_traction: f64,
-    /// Distance to the nearest tool, mm, positive when open.
-    pub gap: f64,
-    /// 0 open, 1 closed and sticking, 2 closed and sliding.
-    pub contact_status: i32,
 }
 
 /// `fields.vtkhdf`: the sheet. Closed when dropped, which must happen on all ranks before MPI is finalised.
@@ -154,7 +128,7 @@ impl SheetFile {
     ///
     /// # Errors
     /// As [`TimeSeries::append`].
-    pub fn write(&mut self, t_ms: f64, samples: &[FieldSample]) -> Result<(), OutputError> {
+    pub fn write(&mut self, t_ms: f64, samples: &[NodeSample]) -> Result<(), OutputError> {
         let displacement = gather(samples, |s| [s.displacement[0], s.displacement[1], 0.0]);
         let stress = gather(samples, |s| {
             let [xx, yy, zz, xy] = s.stress;
@@ -169,7 +143,7 @@ impl SheetFile {
                 Values::F64(&gather(samples, |s| [s.equivalent_plastic_strain])),
                 Values::F64(&gather(samples, |s| [s.contact_pressure])),
                 Values::F64(&gather(samples, |s| [s.gap])),
-                Values::I32(&gather(samples, |s| [s.contact_status])),
+                Values::I32(&gather(samples, |s| [status(s.contact_state)])),
             ],
         )
     }
@@ -284,20 +258,25 @@ impl ContactFile {
     ///
     /// # Errors
     /// As [`TimeSeries::append`].
-    pub fn write(&mut self, t_ms: f64, samples: &[ContactSample]) -> Result<(), OutputError> {
+    pub fn write(&mut self, t_ms: f64, samples: &[ContactPointSample]) -> Result<(), OutputError> {
         self.series.append(
             t_ms,
             &[
                 Values::F64(&gather(samples, |s| {
                     [s.displacement[0], s.displacement[1], 0.0]
                 })),
-                Values::F64(&gather(samples, |s| [s.contact_pressure])),
-                Values::F64(&gather(samples, |s| [s.friction_traction])),
+                Values::F64(&gather(samples, |s| [s.pressure])),
+                Values::F64(&gather(samples, |s| [s.friction])),
                 Values::F64(&gather(samples, |s| [s.gap])),
-                Values::I32(&gather(samples, |s| [s.contact_status])),
+                Values::I32(&gather(samples, |s| [status(Some(s.state))])),
             ],
         )
     }
+}
+
+/// The number by which the files know a state of contact, also that of a node which no tool can touch.
+fn status(state: Option<ContactState>) -> i32 {
+    state.map_or(CANNOT_TOUCH, ContactState::code)
 }
 
 fn in_space(points: &[[f64; 2]]) -> Vec<[f64; 3]> {

@@ -1,12 +1,20 @@
-//! Isotropic hardening: the yield stress as a piecewise linear function of the equivalent plastic strain.
+//! A table of points, with straight pieces between them.
 
 use std::path::Path;
 
-use super::hardening_table::{self, Row};
+use super::table_text::{self, Row};
+use super::{Declaration, Hardening, Law, PlasticStep};
 use crate::text;
 
+pub(super) static LAW: Declaration = Declaration {
+    name: "table",
+    formula: "linear between the points of -hardening_file",
+    constants: &[],
+    build: None,
+};
+
 /// The benchmark's traction curve (SSNP155 document, section 1.2).
-const BENCHMARK: &str = include_str!("../../inputs/reference/hardening.csv");
+const BENCHMARK: &str = include_str!("../../../inputs/reference/hardening.csv");
 
 /// Why a hardening table is refused, as one sentence.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -38,7 +46,7 @@ pub enum HardeningError {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Segment {
     start: f64,
-    /// Yield stress at the start, MPa.
+    /// Flow stress at the start, MPa.
     stress: f64,
     /// MPa per plastic strain, not negative.
     slope: f64,
@@ -46,27 +54,23 @@ struct Segment {
     work: f64,
 }
 
-/// Yield stress (MPa) against equivalent plastic strain p: linear between the points, beyond the last with the last slope.
-/// It never softens. Nothing is allocated after construction.
+impl Segment {
+    /// Flow stress and slope at `p` on the line through the segment.
+    #[inline]
+    fn at(&self, p: f64) -> (f64, f64) {
+        (self.stress + self.slope * (p - self.start), self.slope)
+    }
+}
+
+/// Linear between the points, beyond the last with the last slope.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Hardening {
+pub struct Table {
     /// At least one; the first begins at p = 0.
     segments: Vec<Segment>,
 }
 
-/// The answer of [`Hardening::return_map`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlasticStep {
-    /// Increment of the equivalent plastic strain; 0 for an elastic step.
-    pub dp: f64,
-    /// Yield stress after the step, MPa.
-    pub yield_stress: f64,
-    /// Slope of the hardening curve after the step, MPa.
-    pub slope: f64,
-}
-
 impl Hardening {
-    /// The benchmark's table, which is part of the program. `young`: Young's modulus, MPa.
+    /// The law of the benchmark's table, which is part of the program. `young`: Young's modulus, MPa.
     ///
     /// # Errors
     /// The table's first point is not on the elastic line of this modulus.
@@ -99,9 +103,9 @@ impl Hardening {
             line,
             problem,
         };
-        hardening_table::rows(text)
-            .and_then(|rows| hardening_table::plastic_points(&rows, young))
-            .map(|points| Self::through(&points))
+        table_text::rows(text)
+            .and_then(|rows| table_text::plastic_points(&rows, young))
+            .map(|points| Self::Table(Table::through(&points)))
             .map_err(refuse)
     }
 
@@ -124,11 +128,13 @@ impl Hardening {
                 stress,
             })
             .collect();
-        hardening_table::plastic_points(&rows, young)
-            .map(|points| Self::through(&points))
+        table_text::plastic_points(&rows, young)
+            .map(|points| Self::Table(Table::through(&points)))
             .map_err(refuse)
     }
+}
 
+impl Table {
     /// Through at least two checked points (plastic strain, stress).
     fn through(points: &[(f64, f64)]) -> Self {
         let mut work = 0.0;
@@ -146,10 +152,11 @@ impl Hardening {
                 segment
             })
             .collect();
-        Hardening { segments }
+        Self { segments }
     }
 
     /// Index of the segment that holds `p`; at a kink the one that begins there.
+    #[inline]
     fn segment_at(&self, p: f64) -> usize {
         self.segments
             .partition_point(|segment| segment.start <= p)
@@ -161,37 +168,24 @@ impl Hardening {
         let count = self.segments.len();
         (count, self.segments[count - 1].start)
     }
+}
 
-    /// Initial yield stress, MPa.
-    pub fn initial(&self) -> f64 {
-        self.segments[0].stress
+impl Law for Table {
+    fn flow_stress(&self, p: f64) -> (f64, f64) {
+        self.segments[self.segment_at(p)].at(p)
     }
 
-    /// Yield stress and slope of the curve (both MPa) at the equivalent plastic strain `p` >= 0; at a kink the slope of the
-    /// segment that begins there.
-    pub fn yield_stress(&self, p: f64) -> (f64, f64) {
-        let segment = &self.segments[self.segment_at(p)];
-        (
-            segment.stress + segment.slope * (p - segment.start),
-            segment.slope,
-        )
-    }
-
-    /// Integral of the yield stress from 0 to `p` >= 0, exact: work per volume, MPa.
-    pub fn plastic_work(&self, p: f64) -> f64 {
+    fn plastic_work(&self, p: f64) -> f64 {
         let segment = &self.segments[self.segment_at(p)];
         let along = p - segment.start;
         segment.work + along * (segment.stress + 0.5 * segment.slope * along)
     }
 
-    /// Radial return for von Mises plasticity: the dp with `q_trial` - 3G dp = yield stress at `p_n` + dp, exact because the
-    /// segments are walked one by one (Simo & Hughes 1998, box 3.2, with the consistency condition piecewise linear).
-    ///
-    /// `q_trial`: equivalent trial stress, MPa; `p_n` >= 0: equivalent plastic strain before; `three_g`: three times the
-    /// shear modulus, MPa, > 0. A NaN comes out as NaN.
-    pub fn return_map(&self, q_trial: f64, p_n: f64, three_g: f64) -> PlasticStep {
-        let first = self.segment_at(p_n);
-        let (yield_stress, slope) = self.yield_stress(p_n);
+    /// Exact: the segments are walked one by one until the return ends within one.
+    #[inline]
+    fn return_map(&self, q_trial: f64, p_n: f64, three_g: f64) -> PlasticStep {
+        let mut index = self.segment_at(p_n);
+        let (yield_stress, slope) = self.segments[index].at(p_n);
         if q_trial <= yield_stress {
             return PlasticStep {
                 dp: 0.0,
@@ -199,18 +193,17 @@ impl Hardening {
                 slope,
             };
         }
-        let mut index = first;
         loop {
             let segment = &self.segments[index];
-            let yield_at_p_n = segment.stress + segment.slope * (p_n - segment.start);
-            let dp = (q_trial - yield_at_p_n) / (three_g + segment.slope);
+            let (yield_at_p_n, slope) = segment.at(p_n);
+            let dp = (q_trial - yield_at_p_n) / (three_g + slope);
             match self.segments.get(index + 1) {
                 Some(next) if p_n + dp >= next.start => index += 1,
                 _ => {
                     return PlasticStep {
                         dp,
-                        yield_stress: yield_at_p_n + segment.slope * dp,
-                        slope: segment.slope,
+                        yield_stress: yield_at_p_n + slope * dp,
+                        slope,
                     };
                 }
             }

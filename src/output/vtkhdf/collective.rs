@@ -21,7 +21,7 @@ use hdf5_sys::h5s::{
 ///
 /// Even on a rank whose data do not fit, the collective write takes place (with nothing of that rank), so that the
 /// others are not left waiting.
-pub(crate) fn write_rows<T: H5Type>(
+pub(super) fn write_rows<T: H5Type>(
     dataset: &Dataset,
     first_row: usize,
     data: &[T],

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use hdf5::{Dataset, File, H5Type};
 
-use super::vtkhdf::{ArraySpec, Kind, Values};
+use super::types::{ArraySpec, Kind, Values};
 
 /// The steps of a closed file.
 pub(super) struct EarlierSteps {

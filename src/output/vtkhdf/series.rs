@@ -1,13 +1,4 @@
-//! A time series on a mesh that does not change, in VTK's own HDF5 layout (VTKHDF 2.0, `UnstructuredGrid`).
-//!
-//! Written by all ranks together through MPI-IO, one partition per rank; ParaView (5.12 or newer) and VTK's
-//! `vtkHDFReader` open it. The mesh and the cell arrays are stored once and every step points at them; only the
-//! point arrays grow.
-//!
-//! What holds when a run is killed: a step is written in two flushes, first its data, then the number of steps, so
-//! the file on disk between two steps is complete and consistent, and a kill there loses nothing. HDF5 keeps no
-//! journal: a kill inside a flush (milliseconds per step) can in unlucky cases leave the file unreadable. The history
-//! table does not depend on it.
+//! The file of a series while it is written: one part of the mesh per rank, step after step.
 
 use std::path::{Path, PathBuf};
 
@@ -15,113 +6,12 @@ use hdf5::{Attribute, Dataset, File};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{AsRaw, Communicator};
 
-use super::vtkhdf_earlier::{Column, EarlierSteps};
-use super::vtkhdf_layout::{Layout, extend, write_values};
-use super::vtkhdf_steps::StepTable;
-use super::{OutputError, agreement::agree};
-
-/// VTK's numbers for the cell types used here.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u8)]
-pub enum CellType {
-    /// One point.
-    Vertex = 1,
-    /// A line through any number of points.
-    PolyLine = 4,
-    /// Eight nodes: corners counter-clockwise, then mid-sides starting between the first two corners.
-    QuadraticQuad = 23,
-}
-
-/// One rank's part of the mesh: points in mm, and cells that name them by their local index.
-#[derive(Debug, Clone)]
-pub struct Part {
-    /// Points, mm.
-    pub points: Vec<[f64; 3]>,
-    /// The type of all cells.
-    pub cell_type: CellType,
-    /// The points of all cells, one cell after the other.
-    pub connectivity: Vec<i64>,
-    /// Where each cell starts in `connectivity`, and the end: one entry more than there are cells, starting with 0.
-    pub offsets: Vec<i64>,
-}
-
-impl Part {
-    /// Number of cells.
-    pub fn cells(&self) -> usize {
-        self.offsets.len().saturating_sub(1)
-    }
-
-    fn check(&self) -> Result<(), String> {
-        if self.offsets.first() != Some(&0)
-            || self.offsets.last() != Some(&(self.connectivity.len() as i64))
-        {
-            return Err("the cell offsets do not span the connectivity".into());
-        }
-        match self
-            .connectivity
-            .iter()
-            .find(|&&node| node < 0 || node as usize >= self.points.len())
-        {
-            Some(node) => Err(format!(
-                "a cell names point {node} of {}",
-                self.points.len()
-            )),
-            None => Ok(()),
-        }
-    }
-}
-
-/// What kind of numbers an array holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// Double precision.
-    F64,
-    /// 32-bit integers.
-    I32,
-}
-
-/// Name and shape of an array; the same on all ranks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ArraySpec {
-    /// The name shown to the user.
-    pub name: &'static str,
-    /// Its unit, stored as an attribute; "1" if it has none.
-    pub unit: &'static str,
-    /// Values per point or cell.
-    pub components: usize,
-    /// Kind of numbers.
-    pub kind: Kind,
-}
-
-/// The values of an array on this rank: all components of the first point (or cell), then those of the second, ...
-#[derive(Debug, Clone, Copy)]
-pub enum Values<'a> {
-    /// Double precision.
-    F64(&'a [f64]),
-    /// 32-bit integers.
-    I32(&'a [i32]),
-}
-
-impl Values<'_> {
-    fn check(&self, spec: &ArraySpec, rows: usize) -> Result<(), String> {
-        let (kind, length) = match self {
-            Self::F64(values) => (Kind::F64, values.len()),
-            Self::I32(values) => (Kind::I32, values.len()),
-        };
-        if kind != spec.kind || length != rows * spec.components {
-            let ArraySpec {
-                name,
-                components,
-                kind: expected,
-                ..
-            } = spec;
-            return Err(format!(
-                "array {name} got {length} values of kind {kind:?}, expected {rows} x {components} of kind {expected:?}"
-            ));
-        }
-        Ok(())
-    }
-}
+use super::datasets::{extend, write_values};
+use super::earlier::{Column, EarlierSteps};
+use super::layout::Layout;
+use super::steps::StepTable;
+use super::types::{ArraySpec, Part, Values};
+use crate::output::error::{OutputError, agree};
 
 /// The file being written. Dropping it closes the file on all ranks together: do that before MPI is finalised.
 pub struct TimeSeries {

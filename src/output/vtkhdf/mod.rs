@@ -1,0 +1,27 @@
+//! Time series on a mesh that does not change, in VTK's own HDF5 layout (VTKHDF 2.0, `UnstructuredGrid`).
+//!
+//! In: states of nodes and contact points. Out: `fields.vtkhdf`, `tools.vtkhdf` and `contact.vtkhdf`. Never: mechanics.
+//!
+//! Written by all ranks together through MPI-IO, one partition per rank; ParaView (5.12 or newer) and VTK's
+//! `vtkHDFReader` open it. The mesh and the cell arrays are stored once and every step points at them; only the
+//! point arrays grow.
+//!
+//! What holds when a run is killed: a step is written in two flushes, first its data, then the number of steps, so
+//! the file on disk between two steps is complete and consistent, and a kill there loses nothing. HDF5 keeps no
+//! journal: a kill inside a flush (milliseconds per step) can in unlucky cases leave the file unreadable. The history
+//! table does not depend on it.
+
+mod collective;
+mod datasets;
+mod earlier;
+mod fields;
+mod layout;
+mod series;
+mod steps;
+mod types;
+
+pub use fields::{
+    CONTACT_ARRAYS, ContactFile, SHEET_ARRAYS, SheetFile, SheetPart, TOOL_ARRAYS, ToolsFile,
+};
+pub use series::TimeSeries;
+pub use types::{ArraySpec, CellType, Kind, Part, Values};

@@ -1,0 +1,59 @@
+//! Why a run cannot be made, in one sentence each.
+
+use std::path::PathBuf;
+
+use petsc::CallbackError;
+
+use crate::case::CaseError;
+use crate::output::OutputError;
+use crate::system::SystemError;
+
+/// A run that could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The case or a file it needs.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// Partition or evaluation.
+    #[error(transparent)]
+    System(#[from] SystemError),
+    /// Files.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// PETSc.
+    #[error("{0}; if a value of one of PETSc's options is to blame: -help lists what each can be")]
+    Petsc(#[from] petsc::Error),
+    /// There is nothing to go on from.
+    #[error(transparent)]
+    Restart(#[from] RestartError),
+    /// A signal cannot be caught.
+    #[error("signals cannot be caught: {0}")]
+    Signals(#[from] std::io::Error),
+    /// A hook of the time stepper.
+    #[error(transparent)]
+    Hook(#[from] CallbackError),
+}
+
+/// Why there is nothing to go on from.
+#[derive(Debug, thiserror::Error)]
+pub enum RestartError {
+    /// No checkpoint in the output folder.
+    #[error(
+        "-restart: there is no checkpoint in {}; run without -restart, or give the path of a checkpoint", folder.display()
+    )]
+    None {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// The checkpoint belongs to another problem.
+    #[error(
+        "-restart: the checkpoint {} belongs to another problem ({differences}); give the same options, or run without \
+         -restart", path.display()
+    )]
+    OtherProblem {
+        /// The checkpoint.
+        path: PathBuf,
+        /// The options that differ.
+        differences: String,
+    },
+}
