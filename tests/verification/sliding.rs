@@ -113,7 +113,7 @@ fn cycle(world: &SimpleCommunicator) -> Result<Answer> {
             SOURCE,
         ),
         Row::relative(
-            "work of friction and of the give, mJ per mm",
+            "work of friction and of the contact compliance, mJ per mm",
             statics.measures()?.contact_energy,
             work,
             1e-9,
