@@ -12,7 +12,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use ssnp155::case::Case;
 use ssnp155::element::{ElementForce, Quad8, Quadrature};
 use ssnp155::material::PointState;
-use ssnp155::system::{LocalSystem, Numbering, Problem};
+use ssnp155::system::{History, JacobianEntries, Numbering, Problem, Subdomain};
 use ssnp155::tool::die;
 
 fn material(c: &mut Criterion) {
@@ -75,25 +75,26 @@ fn assembly(c: &mut Criterion) {
     let elements = problem.mesh.elements.len();
     let parts = vec![0; elements];
     let numbering = Numbering::new(&problem, &parts, 1);
-    let local = LocalSystem::new(problem, &parts, &numbering, 0);
+    let local = Subdomain::new(problem, &parts, &numbering, 0);
+    let history = History::virgin(&local);
     let mut noise = Noise::new(2);
     let u: Vec<f64> = (0..local.unknown_count())
         .map(|_| 1e-4 * noise.next())
         .collect();
     let mut residual = vec![0.0; u.len()];
-    let mut entries = vec![0.0; local.jacobian_entries()];
+    let mut entries = JacobianEntries::new(&local);
     group.throughput(Throughput::Elements(elements as u64));
     group.bench_function("residual", |b| {
         b.iter(|| {
             local
-                .residual(30.0, black_box(&u), &u, &mut residual)
+                .residual(&history, 30.0, black_box(&u), &u, &mut residual)
                 .unwrap()
         });
     });
     group.bench_function("tangent", |b| {
         b.iter(|| {
             local
-                .jacobian(30.0, black_box(&u), 2.5, &mut entries)
+                .jacobian(&history, 30.0, black_box(&u), 2.5, &mut entries)
                 .unwrap()
         });
     });

@@ -38,3 +38,27 @@ pub fn gather_lists<T: Equivalence + Clone + Default>(
     comm.all_gather_varcount_into(mine, &mut PartitionMut::new(&mut all[..], counts, starts));
     all
 }
+
+/// The sums of these numbers over the ranks. Collective.
+pub fn sums<T: Equivalence + Default + Copy, const N: usize>(
+    comm: &impl Communicator,
+    mine: [T; N],
+) -> [T; N] {
+    let mut all = [T::default(); N];
+    comm.all_reduce_into(&mine[..], &mut all[..], SystemOperation::sum());
+    all
+}
+
+/// The largest of each of these numbers over the ranks. Collective.
+pub fn maxima<const N: usize>(comm: &impl Communicator, mine: [f64; N]) -> [f64; N] {
+    let mut all = [0.0; N];
+    comm.all_reduce_into(&mine[..], &mut all[..], SystemOperation::max());
+    all
+}
+
+/// The smallest of these numbers over the ranks. Collective.
+pub fn smallest(comm: &impl Communicator, mine: f64) -> f64 {
+    let mut all = 0.0;
+    comm.all_reduce_into(&mine, &mut all, SystemOperation::min());
+    all
+}

@@ -3,13 +3,11 @@
 
 mod common;
 
-use std::rc::Rc;
-
 use allocation_counter::measure;
 use common::{Noise, small_problem};
 use mpi::traits::Communicator;
 use petsc::Session;
-use ssnp155::system::{CondensedSolve, System};
+use ssnp155::system::{CondensedMethod, CondensedSolve, History, SolverChoice, System};
 
 fn main() {
     let (universe, _) = mpi::initialize_with_threading(mpi::Threading::Funneled).unwrap();
@@ -18,12 +16,12 @@ fn main() {
     for friction in [0.0, 0.2] {
         let mut problem = small_problem(12, 2);
         problem.friction_coefficient = friction;
-        let system = Rc::new(System::new(problem, world.duplicate()).unwrap());
+        let system = System::new(problem, world.duplicate()).unwrap();
         allocates_nothing(&system, friction);
     }
 }
 
-fn allocates_nothing(system: &Rc<System>, friction: f64) {
+fn allocates_nothing(system: &System, friction: f64) {
     let mut noise = Noise::new(5);
     let displacements = system.owned_displacements();
     let mut unknowns = system.vector().unwrap();
@@ -32,8 +30,13 @@ fn allocates_nothing(system: &Rc<System>, friction: f64) {
         *value = if i < displacements { 3e-3 } else { 1e-4 } * noise.next();
     }
     let (mut out, mut step) = (system.vector().unwrap(), system.vector().unwrap());
-    let mut entries = system.placeholder_matrix().unwrap();
-    let condensed = CondensedSolve::new(Rc::clone(system)).unwrap();
+    let history = History::virgin(system.local());
+    let mut entries = system.jacobian_entries();
+    let choice = SolverChoice {
+        method: CondensedMethod::Substructures,
+        options_prefix: "condensed_",
+    };
+    let condensed = CondensedSolve::new(system, choice).unwrap();
     let count = |what: &str, evaluate: &mut dyn FnMut()| {
         evaluate();
         let info = measure(|| {
@@ -48,14 +51,15 @@ fn allocates_nothing(system: &Rc<System>, friction: f64) {
     };
     let acceleration = unknowns.to_owned().unwrap();
     count("residual", &mut || {
-        let evaluated = system.residual(30.0, &unknowns, Some(&acceleration), &mut out);
+        let evaluated = system.residual(&history, 30.0, &unknowns, Some(&acceleration), &mut out);
         assert!(evaluated.is_ok());
     });
     count("tangent", &mut || {
-        assert!(system.jacobian(30.0, &unknowns, 2.5, &mut entries).is_ok());
+        let evaluated = system.jacobian(&history, 30.0, &unknowns, 2.5, &mut entries);
+        assert!(evaluated.is_ok());
     });
     count("factorisation and solve", &mut || {
-        assert!(condensed.factor(&[]).unwrap());
+        assert!(condensed.factor(&entries, &[]).unwrap());
         condensed.solve(&out, &mut step).unwrap();
     });
     // The counter does count.

@@ -1,4 +1,4 @@
-//! Every accepted step keeps what makes it a solution: contact that neither sinks in nor pulls, and forces in balance.
+//! Every accepted step keeps what makes it a solution: contact without penetration and without tension, and forces in balance.
 
 mod program;
 

@@ -2,84 +2,41 @@
 //! mpirun.
 
 mod common;
+mod worker;
 
-use std::env;
-use std::process::{Command, ExitCode};
-use std::rc::Rc;
+use std::process::ExitCode;
 
 use common::{Noise, small_problem};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
-use petsc::{Ksp, MatrixOption, Session, Vector, VectorRef, options};
-use ssnp155::system::{CondensedSolve, System};
-
-const WORKER: &str = "--worker";
+use petsc::{Ksp, MatrixOption, Vector, VectorRef, options};
+use ssnp155::system::{CondensedMethod, CondensedSolve, History, SolverChoice, System};
 
 fn main() -> ExitCode {
-    if env::args().any(|arg| arg == WORKER) {
-        worker();
-        return ExitCode::SUCCESS;
-    }
-    let mut held = true;
-    for ranks in ["1", "2", "3"] {
-        let status = Command::new("mpirun")
-            .args(["--timeout", "120", "-n", ranks])
-            .arg(env::current_exe().unwrap())
-            .arg(WORKER)
-            .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
-            .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
-            .env("OMPI_MCA_hwloc_base_binding_policy", "none")
-            .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
-            .env("OMPI_MCA_btl_vader_single_copy_mechanism", "none")
-            .env("OPENBLAS_NUM_THREADS", "1")
-            .status()
-            .unwrap();
-        println!(
-            "test the_condensed_solve_is_petsc_s_on_{ranks}_ranks ... {}",
-            if status.success() { "ok" } else { "FAILED" }
-        );
-        held &= status.success();
-    }
-    if held {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    }
+    worker::on_ranks("the_condensed_solve_is_petsc_s", &[1, 2, 3], compare)
 }
 
-fn worker() {
-    let (universe, _) = mpi::initialize_with_threading(mpi::Threading::Funneled).unwrap();
-    let world = universe.world();
-    // A rank that fails must not leave the others waiting.
-    let passed = std::panic::catch_unwind(|| {
-        let _session = Session::new(&env::args().take(1).collect::<Vec<_>>()).unwrap();
-        for (name, value) in [
-            ("ksp_type", "preonly"),
-            ("pc_type", "lu"),
-            ("pc_factor_mat_solver_type", "mumps"),
-        ] {
-            options::set(&format!("whole_{name}"), value).unwrap();
+fn compare(world: &SimpleCommunicator) {
+    for (name, value) in [
+        ("ksp_type", "preonly"),
+        ("pc_type", "lu"),
+        ("pc_factor_mat_solver_type", "mumps"),
+    ] {
+        options::set(&format!("whole_{name}"), value).unwrap();
+    }
+    for friction in [0.0, 0.2] {
+        for method in [CondensedMethod::Substructures, CondensedMethod::Whole] {
+            agrees(world, friction, method);
         }
-        for friction in [0.0, 0.2] {
-            for solver in ["default", "lu"] {
-                if solver != "default" {
-                    options::set("condensed_pc_type", solver).unwrap();
-                }
-                agrees(&world, friction);
-                options::clear("condensed_pc_type").unwrap();
-            }
-        }
-    });
-    if passed.is_err() {
-        world.abort(1);
     }
 }
 
 /// One Jacobian with points of every kind, two active sets with one analysis.
-fn agrees(world: &SimpleCommunicator, friction: f64) {
+fn agrees(world: &SimpleCommunicator, friction: f64, method: CondensedMethod) {
     let mut problem = small_problem(12, 2);
     problem.friction_coefficient = friction;
-    let system = Rc::new(System::new(problem, world.duplicate()).unwrap());
+    let system = System::new(problem, world.duplicate()).unwrap();
+    let history = History::virgin(system.local());
     let mut noise = Noise::new(17 + world.rank() as u64);
     let owned = system.owned_displacements();
 
@@ -88,8 +45,15 @@ fn agrees(world: &SimpleCommunicator, friction: f64) {
         *value = if i < owned { 1e-4 } else { 1e-5 } * noise.next();
     }
     let mut jacobian = system.matrix().unwrap();
-    assert!(system.jacobian(30.0, &unknowns, 2.5, &mut jacobian).is_ok());
-    let condensed = CondensedSolve::new(Rc::clone(&system)).unwrap();
+    let mut entries = system.jacobian_entries();
+    let evaluated = system.jacobian(&history, 30.0, &unknowns, 2.5, &mut entries);
+    assert!(evaluated.is_ok());
+    jacobian.set_values_coo(entries.values()).unwrap();
+    let choice = SolverChoice {
+        method,
+        options_prefix: "condensed_",
+    };
+    let condensed = CondensedSolve::new(&system, choice).unwrap();
 
     for every in [3, 4] {
         let mut right_side = system.vector().unwrap();
@@ -122,12 +86,15 @@ fn agrees(world: &SimpleCommunicator, friction: f64) {
 
         let reduced_right_side = reduced(world, &right_side, &is_active);
         let mut step = reduced_right_side.duplicate().unwrap();
-        assert!(condensed.factor(&active).unwrap());
+        assert!(condensed.factor(&entries, &active).unwrap());
         condensed.solve(&reduced_right_side, &mut step).unwrap();
         let expected = reduced(world, &whole, &is_active);
         step.axpy(-1.0, &expected).unwrap();
         let error = step.norm2().unwrap() / expected.norm2().unwrap();
-        assert!(error < 1e-10, "friction {friction}: {error:.1e}");
+        assert!(
+            error < 1e-10,
+            "friction {friction}, {method:?}: {error:.1e}"
+        );
     }
 }
 

@@ -7,7 +7,7 @@ use ssnp155::contact::{ContactLocation, ContactRule};
 use ssnp155::element::{ElementForce, Quad8, Quadrature};
 use ssnp155::material::{PointState, VonMises};
 use ssnp155::mesh::partition;
-use ssnp155::system::{LocalSystem, Numbering, Problem};
+use ssnp155::system::{History, JacobianEntries, Numbering, Problem, Subdomain};
 
 const NODES: [[f64; 2]; 8] = [
     [0.0, 0.0],
@@ -238,18 +238,23 @@ fn assemble(
     }
     let (mut residual, mut jacobian) = (vec![0.0; size], vec![0.0; size * size]);
     for rank in 0..ranks {
-        let local = LocalSystem::new(problem.clone(), &parts, &many, rank);
+        let local = Subdomain::new(problem.clone(), &parts, &many, rank);
+        let history = History::virgin(&local);
         let rows: Vec<usize> = local.rows().iter().map(|&r| to_one[r as usize]).collect();
         let gather = |x: &[f64]| rows.iter().map(|&r| x[r]).collect::<Vec<f64>>();
         let mut out = vec![0.0; rows.len()];
-        local.residual(t, &gather(u), &gather(a), &mut out).unwrap();
+        local
+            .residual(&history, t, &gather(u), &gather(a), &mut out)
+            .unwrap();
         rows.iter()
             .zip(&out)
             .for_each(|(&r, value)| residual[r] += value);
         let (pattern_rows, columns) = local.jacobian_pattern();
-        let mut values = vec![0.0; local.jacobian_entries()];
-        local.jacobian(t, &gather(u), shift, &mut values).unwrap();
-        for ((r, c), value) in pattern_rows.iter().zip(&columns).zip(&values) {
+        let mut entries = JacobianEntries::new(&local);
+        local
+            .jacobian(&history, t, &gather(u), shift, &mut entries)
+            .unwrap();
+        for ((r, c), value) in pattern_rows.iter().zip(&columns).zip(entries.values()) {
             if *r >= 0 {
                 jacobian[to_one[*r as usize] * size + to_one[*c as usize]] += value;
             }

@@ -1,5 +1,5 @@
-//! The whole way of the punch on a coarse mesh: the sheet springs back to the same angle whether the punch is withdrawn
-//! or vanishes, unless friction makes it yield again on the way.
+//! The whole travel of the punch on a coarse mesh: the sheet springs back to the same angle whether the punch is withdrawn
+//! or vanishes, unless friction makes it yield again while it is withdrawn.
 
 mod program;
 
@@ -30,14 +30,14 @@ fn angles(name: &str, friction: &str) -> (f64, f64) {
 }
 
 #[test]
-fn without_friction_both_ways_to_let_go_end_at_the_same_angle() {
+fn without_friction_both_kinds_of_release_end_at_the_same_angle() {
     let (withdrawn, vanished) = angles("free", "0");
     assert!((withdrawn - vanished).abs() < 0.1, "{withdrawn} {vanished}");
     assert!((withdrawn - 45.73).abs() < 0.3, "{withdrawn}");
 }
 
 #[test]
-fn with_friction_the_sheet_yields_again_on_the_way_out() {
+fn with_friction_the_sheet_yields_again_on_release() {
     let (withdrawn, vanished) = angles("friction", "0.1342");
     assert!((withdrawn - 54.6).abs() < 1.0, "{withdrawn}");
     assert!(vanished - withdrawn > 1.0, "{withdrawn} {vanished}");

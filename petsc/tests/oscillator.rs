@@ -23,6 +23,10 @@ fn main() {
             "a_state_put_into_the_method_goes_on_to_the_last_bit",
             state_goes_on,
         ),
+        (
+            "the_acceleration_of_a_step_is_that_of_its_equations",
+            stage_acceleration,
+        ),
         ("interpolation_at_the_end_is_refused", interpolation),
         ("hooks_see_times_in_order", hooks),
     ]);
@@ -210,6 +214,54 @@ fn state_goes_on(comm: &SimpleCommunicator) {
                 "radius {radius}, stop {stop}"
             );
         }
+    }
+}
+
+fn stage_acceleration(comm: &SimpleCommunicator) {
+    for radius in [0.0, 0.3, 0.8] {
+        let mut ts = oscillator(comm, radius, 20);
+        let last: Rc<RefCell<f64>> = Rc::default();
+        let seen = Rc::clone(&last);
+        let (u, own) = {
+            let u = ts.solution().unwrap();
+            (u.to_owned().unwrap(), u.ownership_range().unwrap().start)
+        };
+        let matrix = Matrix::from_coo(comm, 1, &[own], &[own]).unwrap();
+        ts.set_second_order(
+            &u,
+            matrix,
+            move |_, u, _, a, f| {
+                seen.replace(a.read()?[0]);
+                Ok(f.waxpy(1.0, u, a)?)
+            },
+            |_, _, _, _, _, shift_a, matrix| Ok(matrix.set_values_coo(&[1.0 + shift_a])?),
+        )
+        .unwrap();
+        let none = u.duplicate().unwrap();
+        let state = Rc::new(RefCell::new(Alpha2State::new(&ts, &none).unwrap()));
+        let compared: Rc<RefCell<usize>> = Rc::default();
+        let (follower, count) = (Rc::clone(&state), Rc::clone(&compared));
+        ts.set_pre_stage(move |ts, _| Ok(follower.borrow_mut().attempt(ts)?))
+            .unwrap();
+        ts.set_post_step(move |ts| {
+            let mut state = state.borrow_mut();
+            state.accepted(ts)?;
+            let (found, expected) = (state.stage_acceleration().read()?[0], *last.borrow());
+            if ts.step_number()? == 1 {
+                assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+            } else {
+                assert_eq!(found.to_bits(), expected.to_bits(), "radius {radius}");
+            }
+            *count.borrow_mut() += 1;
+            let step = f64::from(ts.step_number()?);
+            Ok(ts.set_time_step(0.05 + 0.01 * (3.0 * step).sin())?)
+        })
+        .unwrap();
+        ts.set_exact_final_time(petsc::ExactFinalTime::StepOver)
+            .unwrap();
+        ts.set_max_steps(15).unwrap();
+        ts.solve().unwrap();
+        assert_eq!(*compared.borrow(), 15);
     }
 }
 

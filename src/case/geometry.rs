@@ -85,9 +85,9 @@ fn check_support(case: &Case) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// Shortest way (mm) of the sheet's lower side at full stroke from the plane of symmetry to the shoulder: round the punch,
+/// Shortest path (mm) of the sheet's lower side at full stroke from the plane of symmetry to the shoulder: round the punch,
 /// then along the common tangent of the punch (with the sheet on it) and the shoulder. A sheet that leaves the punch
-/// takes a longer way, so a shorter sheet slips off for certain.
+/// takes a longer path, so a shorter sheet slips off for certain.
 pub(crate) fn inner_path(case: &Case) -> f64 {
     let punch = case.tools.punch_radius + case.sheet.thickness;
     let shoulder = case.tools.die_shoulder_radius;

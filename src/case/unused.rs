@@ -1,4 +1,4 @@
-//! Options nobody read: a slip of the pen is an error that names the option that was meant, PETSc's own are warned about.
+//! Options nobody read: a typing mistake is an error that names the option that was meant, PETSc's own are warned about.
 
 use super::error::{CaseError, Warning};
 use super::option::Described;

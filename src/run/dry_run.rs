@@ -12,7 +12,7 @@ use crate::case::{Case, Dynamics};
 use crate::contact::ContactLocation;
 use crate::output::monitor::Monitor;
 use crate::output::{OutputDir, plot};
-use crate::system::{Problem, Share, System};
+use crate::system::{Problem, SubdomainSize, System};
 use crate::text::number;
 
 /// Memory of a rank without any unknowns, alone and among others, and for n log2 n with n the unknowns it owns (the
@@ -35,7 +35,7 @@ pub(super) fn describe(case: &Case, comm: &SimpleCommunicator) -> Result<(), Run
         let (die, punch) = recorder::right_halves(local.problem());
         plot::model(folder.model_figure(), case, &die, &punch)?;
     }
-    let shares = system.shares();
+    let shares = SubdomainSize::of_all(&system);
     let mut text = String::from("dry run: the model, nothing is solved\n\n");
     for (name, value) in facts(case, &system, &shares, &landmarks(case)?) {
         text.push_str(&format!("{name:<12}  {value}\n"));
@@ -52,7 +52,7 @@ pub(super) fn describe(case: &Case, comm: &SimpleCommunicator) -> Result<(), Run
 fn facts(
     case: &Case,
     system: &System,
-    shares: &[Share],
+    shares: &[SubdomainSize],
     landmarks: &[f64],
 ) -> Vec<(&'static str, String)> {
     let Case {
@@ -66,7 +66,7 @@ fn facts(
         ..
     } = case;
     let motion = loading.motion();
-    let sum = |part: fn(&Share) -> usize| shares.iter().map(part).sum::<usize>();
+    let sum = |part: fn(&SubdomainSize) -> usize| shares.iter().map(part).sum::<usize>();
     let yields = |p: f64| format!("{:.1}", material.hardening.yield_stress(p).0);
     let edge = sheet.half_length() / discretisation.nx as f64;
     let mut facts = vec![
@@ -215,12 +215,12 @@ fn facts(
     facts
 }
 
-fn memory(shares: &[Share]) -> String {
+fn memory(shares: &[SubdomainSize]) -> String {
     let (least, ranks) = match shares.len() {
         1 => (MEMORY_ALONE, "1 rank".to_owned()),
         ranks => (MEMORY_AMONG_OTHERS, format!("{ranks} ranks together")),
     };
-    let of = |share: &Share| {
+    let of = |share: &SubdomainSize| {
         let unknowns = share.unknowns.max(2) as f64;
         (least + MEMORY_PER_UNKNOWN * unknowns * unknowns.log2()) / 1e6
     };
@@ -237,7 +237,7 @@ fn least_steps(landmarks: &[f64], longest: f64) -> usize {
         .sum()
 }
 
-fn table(shares: &[Share]) -> String {
+fn table(shares: &[SubdomainSize]) -> String {
     let mut text = format!(
         "\n{:>6}{:>10}{:>8}{:>14}{:>16}{:>10}\n",
         "rank", "elements", "nodes", "shared nodes", "contact points", "unknowns"

@@ -34,13 +34,13 @@ pub use newton::Damping;
 pub use outcome::{Failure, Outcome};
 pub use recorder::Recorder;
 pub use simulation::Interruption;
-pub use springback::{Springback, springback};
+pub use springback::Springback;
 pub use static_path::StaticPath;
 pub use step_size::StepControl;
 pub use stop_watch::StopCause;
 
 use crate::case::Case;
-use crate::system::{Problem, System};
+use crate::system::{History, Problem, System};
 use ledger::Spent;
 use outcome::why;
 use setup::{blas, defaults, unread};
@@ -51,7 +51,7 @@ use stop_watch::StopWatch;
 /// Runs the case to its end or to the step that cannot be solved. Collective.
 ///
 /// # Errors
-/// If the run cannot be set up, or PETSc or a file fails on the way.
+/// If the run cannot be set up, or PETSc or a file fails during it.
 pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome>, RunError> {
     let clock = Instant::now();
     // Before any file is made: neither a typing mistake nor a question may cost an earlier run's results.
@@ -71,13 +71,14 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     let landmarks = landmarks(case)?;
     let system = Rc::new(System::new(problem, comm.duplicate())?);
     let unknowns = system.unknown_count();
-    if let Some(resumed) = &resumed {
-        resumed.restore_history(&system)?;
-    }
+    let history = match &resumed {
+        Some(resumed) => resumed.history(&system)?,
+        None => History::virgin(system.local()),
+    };
     let mut recorder = Recorder::new(case, &system, resumed.as_ref())?;
     recorder.show(&blas::report(comm));
     let simulation = Rc::new(Simulation::new(
-        case, system, recorder, landmarks, stop_watch, spent,
+        case, system, history, recorder, landmarks, stop_watch, spent,
     )?);
     let finish = simulation.run(case, resumed.as_ref())?;
     // A limit of the user's (-ts_max_steps) is a good end for PETSc, but not for the motion.

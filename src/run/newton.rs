@@ -1,7 +1,5 @@
 //! How far a Newton step goes, and how much inertia its tangent has.
 
-use std::cell::Cell;
-
 /// Full steps are trusted up to this iteration.
 const TRUSTED_ITERATIONS: usize = 5;
 /// A residual that fell by less than this factor over two iterations stagnates.
@@ -66,36 +64,35 @@ const MOST_INERTIA: f64 = 1e4;
 
 /// Inertia in the tangent of a Newton solve, as a multiple of its own.
 ///
-/// A step that [`limited_length`] cuts tells that the tangent is nearly singular or indefinite: the sheet
+/// A step that [`limited_length`] cuts shows that the tangent is nearly singular or indefinite: the sheet
 /// snaps through. More mass in the next tangent, as a shorter time step would bring, makes it definite;
 /// the residual, and so the solution, stays the same (pseudo-transient continuation: Kelley and Keyes
 /// 1998, SIAM J. Numer. Anal. 35, 508-523). Without mass in the case it changes nothing.
-#[derive(Debug)]
-pub(super) struct TangentInertia(Cell<f64>);
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TangentInertia(f64);
+
+impl Default for TangentInertia {
+    fn default() -> Self {
+        Self::OWN
+    }
+}
 
 impl TangentInertia {
-    /// The tangent's own inertia.
-    pub(super) const fn own() -> Self {
-        Self(Cell::new(1.0))
-    }
+    /// The tangent's own inertia, with which a solve begins.
+    pub(super) const OWN: Self = Self(1.0);
 
     /// The multiple for the next tangent.
-    pub(super) fn multiple(&self) -> f64 {
-        self.0.get()
+    pub(super) fn multiple(self) -> f64 {
+        self.0
     }
 
-    /// A new solve begins.
-    pub(super) fn reset(&self) {
-        self.0.set(1.0);
-    }
-
-    /// A step was given this length by [`limited_length`].
-    pub(super) fn follow(&self, length: f64) {
-        self.0.set(if length < 1.0 {
-            (self.0.get() * INERTIA_FACTOR).min(MOST_INERTIA)
+    /// [`limited_length`] gave a step this length.
+    pub(super) fn follow(&mut self, length: f64) {
+        self.0 = if length < 1.0 {
+            (self.0 * INERTIA_FACTOR).min(MOST_INERTIA)
         } else {
-            (self.0.get() / INERTIA_FACTOR).max(1.0)
-        });
+            (self.0 / INERTIA_FACTOR).max(1.0)
+        };
     }
 }
 
@@ -114,7 +111,7 @@ mod tests {
 
     #[test]
     fn inertia_grows_while_steps_are_limited_and_goes_back() {
-        let inertia = TangentInertia::own();
+        let mut inertia = TangentInertia::OWN;
         let multiples = [1.0, 0.2, 0.5, 1.0, 1.0, 1.0].map(|length| {
             inertia.follow(length);
             inertia.multiple()

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use petsc::VectorRef;
 
 use super::{RunError, StaticPath};
-use crate::system::System;
+use crate::system::{History, Measures, Released, System};
 
 /// First step of the tools' forces towards zero, as a share of them.
 const FIRST_STEP: f64 = 0.125;
@@ -26,40 +26,67 @@ pub struct Springback {
     pub released_angle_deg: f64,
     /// Root mean square distance of the released arm from its straight fit, mm.
     pub fit_residual_mm: f64,
-    /// Growth of the largest equivalent plastic strain on the way: zero if it was elastic.
+    /// Growth of the largest equivalent plastic strain meanwhile: zero if it was elastic.
     pub plastic_growth: f64,
 }
 
-/// Takes the tools away from the accepted unknowns `u` at time `t` (ms) and lets their forces go to
-/// zero in static steps. `None` if they do not converge. `system` is left as it was.
-/// Collective.
-///
-/// # Errors
-/// If PETSc fails.
-pub fn springback(system: &System, t: f64, u: &VectorRef) -> Result<Option<Springback>, RunError> {
-    let loaded = system.measures(t, u, None)?;
-    let (released, unknowns) = system.released(u, 0.0, 1.0)?;
-    let released = Rc::new(released);
-    let mut path = StaticPath::new(Rc::clone(&released), unknowns)?;
-    let (mut faded, mut step) = (0.0, FIRST_STEP);
-    while faded < 1.0 {
-        let next = f64::min(faded + step, 1.0);
-        if path.advance(next)?.is_converged() {
-            faded = next;
-            step *= GROWTH;
-        } else {
-            step *= CUT_BACK;
-            if step < LEAST_STEP {
-                return Ok(None);
+/// A sheet whose tools have just vanished: their forces are still there.
+pub(super) struct ReleasedSheet {
+    t: f64,
+    loaded: Measures,
+    system: Rc<System>,
+    path: StaticPath,
+}
+
+impl ReleasedSheet {
+    /// The sheet of `system` with its history at the accepted unknowns `u` at time `t` (ms). Collective.
+    ///
+    /// # Errors
+    /// If PETSc fails or an element cannot be evaluated.
+    pub fn new(
+        system: &System,
+        history: &History,
+        t: f64,
+        u: &VectorRef,
+    ) -> Result<Self, RunError> {
+        let loaded = system.measures(history, t, u, None)?;
+        let released = Released::new(system, history, u, 0.0, 1.0)?;
+        let system = Rc::new(released.system);
+        let path = StaticPath::new(Rc::clone(&system), released.history, released.unknowns)?;
+        Ok(Self {
+            t,
+            loaded,
+            system,
+            path,
+        })
+    }
+
+    /// Lets the forces go to zero in static steps. `None` if they do not converge. Collective.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn spring_back(mut self) -> Result<Option<Springback>, RunError> {
+        let (mut faded, mut step) = (0.0, FIRST_STEP);
+        while faded < 1.0 {
+            let next = f64::min(faded + step, 1.0);
+            if self.path.advance(next)?.is_converged() {
+                faded = next;
+                step *= GROWTH;
+            } else {
+                step *= CUT_BACK;
+                if step < LEAST_STEP {
+                    return Ok(None);
+                }
             }
         }
+        let (history, unknowns) = (self.path.history(), self.path.unknowns());
+        let free = self.system.measures(&history, 1.0, unknowns, None)?;
+        Ok(Some(Springback {
+            t_ms: self.t,
+            loaded_angle_deg: self.loaded.angle,
+            released_angle_deg: free.angle,
+            fit_residual_mm: free.angle_fit_residual,
+            plastic_growth: free.max_plastic_strain - self.loaded.max_plastic_strain,
+        }))
     }
-    let free = released.measures(1.0, path.unknowns(), None)?;
-    Ok(Some(Springback {
-        t_ms: t,
-        loaded_angle_deg: loaded.angle,
-        released_angle_deg: free.angle,
-        fit_residual_mm: free.angle_fit_residual,
-        plastic_growth: free.max_plastic_strain - loaded.max_plastic_strain,
-    }))
 }

@@ -1,6 +1,6 @@
 //! A static solution from time to time, without files and without step control.
 
-use std::cell::{Cell, RefCell};
+use std::cell::{Ref, RefCell};
 use std::rc::Rc;
 
 use petsc::{Snes, SnesReason, Vector, VectorRef};
@@ -8,40 +8,53 @@ use petsc::{Snes, SnesReason, Vector, VectorRef};
 use super::RunError;
 use super::newton::Damping;
 use super::setup::LinearSolve;
-use crate::system::System;
+use crate::system::{History, System};
 
-/// Solves a system statically at the times it is given and commits what converged.
+/// Solves a system statically at one time after the other, and accepts what converged.
 pub struct StaticPath {
     system: Rc<System>,
     snes: Snes,
     unknowns: Vector,
-    time: Rc<Cell<f64>>,
+    progress: Rc<RefCell<Progress>>,
+}
+
+/// What the closures of the solver read and move on.
+struct Progress {
+    /// That of the last accepted state.
+    history: History,
+    /// Time to be reached, ms.
+    time: f64,
+    damping: Damping,
 }
 
 impl StaticPath {
-    /// Starts from `unknowns`, which belong to the system's history. Collective.
+    /// Starts from `unknowns`, whose history this is. Collective.
     ///
     /// # Errors
     /// If PETSc fails.
-    pub fn new(system: Rc<System>, unknowns: Vector) -> Result<Self, RunError> {
-        let time = Rc::new(Cell::new(0.0));
+    pub fn new(system: Rc<System>, history: History, unknowns: Vector) -> Result<Self, RunError> {
+        let progress = Rc::new(RefCell::new(Progress {
+            history,
+            time: 0.0,
+            damping: Damping::default(),
+        }));
         let mut snes = Snes::new(system.comm())?;
-        let (this, now) = (Rc::clone(&system), Rc::clone(&time));
+        let (this, now) = (Rc::clone(&system), Rc::clone(&progress));
         snes.set_function(&unknowns, move |u, out| {
-            this.residual(now.get(), u, None, out)
+            let Progress { history, time, .. } = &*now.borrow();
+            Ok(this.residual(history, *time, u, None, out)?)
         })?;
         let linear = LinearSolve::chosen(&system)?;
-        let (this, now) = (Rc::clone(&system), Rc::clone(&time));
-        snes.set_jacobian(linear.matrix(&system)?, move |u, out| {
-            let evaluated = this.jacobian(now.get(), u, 0.0, out);
-            evaluated.map_err(super::simulation::not_evaluated)
+        let (this, now) = (Rc::clone(&linear), Rc::clone(&progress));
+        snes.set_jacobian(linear.matrix()?, move |u, out| {
+            let Progress { history, time, .. } = &*now.borrow();
+            this.evaluate(history, *time, u, 0.0, out)
         })?;
-        let damping = RefCell::new(Damping::default());
+        let now = Rc::clone(&progress);
         snes.set_shell_line_search(move |info| {
             let iteration = info.iteration.unsigned_abs() as usize;
-            Ok(damping
-                .borrow_mut()
-                .step_length(iteration, info.residual_norm))
+            let damping = &mut now.borrow_mut().damping;
+            Ok(damping.step_length(iteration, info.residual_norm))
         })?;
         snes.set_type("vinewtonrsls")?;
         linear.install(&mut snes)?;
@@ -52,20 +65,21 @@ impl StaticPath {
             system,
             snes,
             unknowns,
-            time,
+            progress,
         })
     }
 
-    /// Solves at time `t` (ms) and commits the state if the solve converged. Collective.
+    /// Solves at time `t` (ms) and accepts the state if the solve converged. Collective.
     ///
     /// # Errors
     /// If PETSc fails.
     pub fn advance(&mut self, t: f64) -> Result<SnesReason, RunError> {
-        self.time.set(t);
+        self.progress.borrow_mut().time = t;
         let before = self.unknowns.to_owned()?;
         let reason = self.snes.solve(&mut self.unknowns)?;
         if reason.is_converged() {
-            self.system.commit(t, &self.unknowns)?;
+            let next = self.system.advance(&self.history(), t, &self.unknowns)?;
+            self.progress.borrow_mut().history = next;
         } else {
             self.unknowns.copy_from(&before)?;
         }
@@ -77,11 +91,8 @@ impl StaticPath {
         &self.unknowns
     }
 
-    /// Newton iterations of the last solve.
-    ///
-    /// # Errors
-    /// If PETSc fails.
-    pub fn newton_iterations(&self) -> Result<u32, RunError> {
-        Ok(self.snes.iteration_number()?.unsigned_abs())
+    /// Their history.
+    pub fn history(&self) -> Ref<'_, History> {
+        Ref::map(self.progress.borrow(), |progress| &progress.history)
     }
 }

@@ -1,7 +1,7 @@
 //! Global rows of the unknowns: rank by rank, first the displacements of the nodes a rank owns, then
 //! multiplier and gap of each of its contact points.
 
-use super::Problem;
+use super::problem::Problem;
 use crate::mesh::Partition;
 
 /// Unknowns of a contact point: multiplier and gap.

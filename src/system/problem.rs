@@ -28,7 +28,7 @@ pub struct Problem {
     pub loads: Vec<NodalValue>,
     /// Where the faces' edges have contact points.
     pub contact_rule: ContactRule,
-    /// Give of the surface under unit pressure, mm/MPa.
+    /// Contact compliance: how far the surface yields under unit pressure, mm/MPa.
     pub contact_compliance: f64,
     /// Coulomb's coefficient of friction.
     pub friction_coefficient: f64,

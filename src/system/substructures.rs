@@ -18,10 +18,9 @@ use mpi::traits::{Communicator, CommunicatorCollectives};
 use petsc::{FactorKind, FactorStatus, Factorization, Matrix, Vector};
 
 use super::System;
-use super::condensed::PREFIX;
-use super::elimination::CondensedPattern;
+use super::condensation::CondensedPattern;
 
-/// Beyond so many shared unknowns the dense S costs more than it saves.
+/// Beyond this number of shared unknowns the dense S costs more than it saves.
 const MOST_SHARED: usize = 2000;
 
 /// One rank's part of the solve.
@@ -65,54 +64,30 @@ impl Substructures {
     pub(super) fn new(
         system: &System,
         pattern: &CondensedPattern,
-        symmetric: bool,
+        kind: FactorKind,
+        options_prefix: &str,
     ) -> petsc::Result<Option<Self>> {
         let (comm, local) = (system.comm(), system.local());
-        let rank = comm.rank() as usize;
-        let places = shared_nodes(system);
-        let count = 2 * places.iter().flatten().count();
         let all = 2 * local.nodes.len();
-        let shared: Vec<Shared> = (0..all)
-            .filter_map(|unknown| {
-                let place = places[local.nodes[unknown / 2]]?;
-                Some(Shared {
-                    local: unknown,
-                    place: 2 * place + unknown % 2,
-                    owned: local.owned[unknown / 2],
-                })
-            })
-            .collect();
+        let (shared, count) = shared_unknowns(system);
         let mut unfit = i32::from(count == 0 || count > MOST_SHARED || shared.len() == all);
         let mine = unfit;
         comm.all_reduce_into(&mine, &mut unfit, SystemOperation::max());
         if unfit > 0 {
             return Ok(None);
         }
-        let kind = if symmetric {
-            FactorKind::Symmetric
-        } else {
-            FactorKind::General
-        };
         let alone = SimpleCommunicator::self_comm();
         let mut matrix = Matrix::from_coo(&alone, all, &pattern.rows, &pattern.columns)?;
         // The analysis wants entries, and must not depend on which: a restart begins with others.
         matrix.set_values_coo(&vec![1.0; pattern.rows.len()])?;
         let kept: Vec<i32> = shared.iter().map(|shared| shared.local as i32).collect();
-        let inner = Factorization::keeping(&matrix, kind, &kept, PREFIX)?;
-        let grid = |step: fn(usize, usize) -> usize| -> Vec<i32> {
-            (0..count * count).map(|k| step(k, count) as i32).collect()
+        let inner = Factorization::keeping(&matrix, kind, &kept, options_prefix)?;
+        let full = |index: fn(usize, usize) -> usize| -> Vec<i32> {
+            (0..count * count).map(|k| index(k, count) as i32).collect()
         };
-        let mut schur_matrix =
-            Matrix::from_coo(&alone, count, &grid(|k, n| k / n), &grid(|k, n| k % n))?;
+        let (rows, columns) = (full(|k, n| k / n), full(|k, n| k % n));
+        let mut schur_matrix = Matrix::from_coo(&alone, count, &rows, &columns)?;
         schur_matrix.set_values_coo(&vec![1.0; count * count])?;
-        let first = system.numbering.rank_displacements[rank];
-        let owned = (0..all)
-            .filter(|unknown| local.owned[unknown / 2])
-            .map(|unknown| {
-                let row = system.numbering.displacement_row(local.nodes[unknown / 2]);
-                (unknown, row + unknown % 2 - first)
-            })
-            .collect();
         Ok(Some(Self {
             comm: comm.duplicate(),
             schur_factors: Factorization::new(&schur_matrix, kind)?,
@@ -131,7 +106,7 @@ impl Substructures {
             matrix,
             inner,
             shared,
-            owned,
+            owned: owned_unknowns(system),
         }))
     }
 
@@ -163,8 +138,8 @@ impl Substructures {
         Ok(self.schur_factors.factor(&self.schur_matrix)? == FactorStatus::Ready)
     }
 
-    /// Solves for the right-hand side `b`, of which this rank knows all its local displacements, and gives
-    /// those it owns. Collective.
+    /// Solves for the right-hand side `b`, of which this rank knows all its local displacements, and returns
+    /// those it owns in `out`. Collective.
     pub(super) fn solve(&mut self, b: &[f64], out: &mut Vector) -> petsc::Result<()> {
         let work = &mut self.work;
         let mut right_side = work.right_side.write()?;
@@ -180,8 +155,8 @@ impl Substructures {
         work.shared_part.fill(0.0);
         let product = work.product.read()?;
         for shared in &self.shared {
-            let given = if shared.owned { b[shared.local] } else { 0.0 };
-            work.shared_part[shared.place] = given - product[shared.local];
+            let of_owner = if shared.owned { b[shared.local] } else { 0.0 };
+            work.shared_part[shared.place] = of_owner - product[shared.local];
         }
         drop(product);
         let mut sum = work.shared_right_side.write()?;
@@ -221,13 +196,40 @@ fn clear(vector: &mut Vector, shared: &[Shared]) -> petsc::Result<()> {
     Ok(())
 }
 
+/// The shared unknowns of this rank, and the number of those of all ranks.
+fn shared_unknowns(system: &System) -> (Vec<Shared>, usize) {
+    let (local, places) = (system.local(), shared_nodes(system));
+    let mine = (0..2 * local.nodes.len()).filter_map(|unknown| {
+        let place = places[local.nodes[unknown / 2]]?;
+        Some(Shared {
+            local: unknown,
+            place: 2 * place + unknown % 2,
+            owned: local.owned[unknown / 2],
+        })
+    });
+    (mine.collect(), 2 * places.iter().flatten().count())
+}
+
+/// The owned displacements of this rank: local number, and place among those owned.
+fn owned_unknowns(system: &System) -> Vec<(usize, usize)> {
+    let (local, numbering) = (system.local(), system.numbering());
+    let first = numbering.rank_displacements[system.comm().rank() as usize];
+    (0..2 * local.nodes.len())
+        .filter(|unknown| local.owned[unknown / 2])
+        .map(|unknown| {
+            let row = numbering.displacement_row(local.nodes[unknown / 2]);
+            (unknown, row + unknown % 2 - first)
+        })
+        .collect()
+}
+
 /// For each node of the mesh its place among those that elements of several ranks touch.
 fn shared_nodes(system: &System) -> Vec<Option<usize>> {
     let local = system.local();
     let mesh = &local.problem.mesh;
-    let owner = &system.numbering.node_owner;
+    let owner = &system.numbering().node_owner;
     let mut shared = vec![false; mesh.nodes.len()];
-    for (nodes, &rank) in mesh.elements.iter().zip(&system.parts) {
+    for (nodes, &rank) in mesh.elements.iter().zip(system.partition()) {
         for &node in nodes {
             shared[node] |= owner[node] != rank;
         }

@@ -50,28 +50,25 @@ fn impact(world: &SimpleCommunicator, elements: usize) -> Result<Outcome> {
         velocity: &|_| [0.0, -SPEED],
     };
     let column = mesh.symmetry_nodes.clone();
-    let motion = integrate(
-        world,
-        model,
-        &start,
-        0.0,
-        (dt, 10 * elements),
-        move |system, t, u, v| {
-            let points = system.local().contact_points(t, &system.local_values(u)?);
-            let measures = system.measures(t, u, Some(v))?;
-            let v = v.read()?;
-            let speed = |k: usize| v[2 * column[k] + 1];
-            let mean = (0..elements)
-                .map(|e| (speed(2 * e) + 4.0 * speed(2 * e + 1) + speed(2 * e + 2)) / 6.0)
-                .sum::<f64>()
-                / elements as f64;
-            Ok(Watched {
-                pressure: points.iter().map(|p| p.pressure).sum::<f64>() / points.len() as f64,
-                velocity: mean,
-                energy: measures.kinetic_energy + measures.strain_energy + measures.contact_energy,
-            })
-        },
-    )?;
+    let motion = integrate(world, model, &start, 0.0, (dt, 10 * elements), move |now| {
+        let values = now.system.local_values(now.u)?;
+        let points = now
+            .system
+            .local()
+            .contact_points(now.history, now.t, &values);
+        let measures = now.measures()?;
+        let v = now.rates.velocity.read()?;
+        let speed = |k: usize| v[2 * column[k] + 1];
+        let mean = (0..elements)
+            .map(|e| (speed(2 * e) + 4.0 * speed(2 * e + 1) + speed(2 * e + 2)) / 6.0)
+            .sum::<f64>()
+            / elements as f64;
+        Ok(Watched {
+            pressure: points.iter().map(|p| p.pressure).sum::<f64>() / points.len() as f64,
+            velocity: mean,
+            energy: measures.kinetic_energy + measures.strain_energy + measures.contact_energy,
+        })
+    })?;
     let exact_pressure = DENSITY * wave_speed * SPEED;
     let touching: Vec<usize> = (0..motion.len())
         .filter(|&k| motion[k].pressure > 0.5 * exact_pressure)

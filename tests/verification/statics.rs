@@ -13,7 +13,9 @@ use ssnp155::element::Quadrature;
 use ssnp155::mesh::SheetMesh;
 use ssnp155::ranks::gather_lists;
 use ssnp155::run::StaticPath;
-use ssnp155::system::{ContactPointSample, Factor, Measures, NodalValue, Problem, System, Tool};
+use ssnp155::system::{
+    ContactPointSample, Factor, History, Measures, NodalValue, Problem, System, Tool,
+};
 use ssnp155::tool::{Motion, Piece, Profile};
 
 use crate::flow::Constants;
@@ -198,7 +200,7 @@ impl Statics {
         let system = Rc::new(System::new(problem, world.duplicate())?);
         let start = start_unknowns(&system, touching)?;
         Ok(Self {
-            path: StaticPath::new(Rc::clone(&system), start)?,
+            path: StaticPath::new(Rc::clone(&system), History::virgin(system.local()), start)?,
             system,
             time: 0.0,
         })
@@ -233,7 +235,7 @@ impl Statics {
         let values = self.system.local_values(self.path.unknowns())?;
         let mut forces = vec![0.0; values.len()];
         let local = self.system.local();
-        local.add_internal_forces(&values, &mut forces)?;
+        local.add_internal_forces(&self.path.history(), &values, &mut forces)?;
         let young = local.problem().young_modulus;
         let pairs = forces.chunks_exact(2).map(|f| [young * f[0], young * f[1]]);
         // A node between two ranks has a share on each.
@@ -243,8 +245,8 @@ impl Statics {
     /// Cauchy stress xx, yy, zz, xy at every node, MPa.
     pub fn stresses(&self) -> Result<Vec<[f64; 4]>> {
         let values = self.system.local_values(self.path.unknowns())?;
-        let sampler = self.system.local().field_sampler();
-        let samples = self.system.node_samples(&sampler, self.time, &values)?;
+        let history = self.path.history();
+        let samples = self.system.node_samples(&history, self.time, &values)?;
         Ok(self.gathered(samples.iter().map(|s| s.stress), |_, other| other))
     }
 
@@ -277,7 +279,9 @@ impl Statics {
     /// The contact points, by their place along the body.
     pub fn contacts(&self) -> Result<Vec<Touch>> {
         let values = self.system.local_values(self.path.unknowns())?;
-        let points = self.system.local().contact_points(self.time, &values);
+        let history = self.path.history();
+        let local = self.system.local();
+        let points = local.contact_points(&history, self.time, &values);
         let packed: Vec<f64> = points.iter().flat_map(pack).collect();
         let all = gather_lists(self.system.comm(), &packed);
         let mut all: Vec<Touch> = all.chunks_exact(PACKED).map(unpack).collect();
@@ -289,9 +293,8 @@ impl Statics {
     }
 
     pub fn measures(&self) -> Result<Measures> {
-        Ok(self
-            .system
-            .measures(self.time, self.path.unknowns(), None)?)
+        let (history, unknowns) = (self.path.history(), self.path.unknowns());
+        Ok(self.system.measures(&history, self.time, unknowns, None)?)
     }
 }
 
@@ -331,7 +334,8 @@ pub fn start_unknowns(system: &System, touching: Touching) -> Result<Vector> {
     let mut unknowns = system.vector()?;
     unknowns.set_all(0.0)?;
     let local = system.local();
-    let points = local.contact_points(0.0, &vec![0.0; local.unknown_count()]);
+    let still = vec![0.0; local.unknown_count()];
+    let points = local.contact_points(&History::virgin(local), 0.0, &still);
     let closed = |point: &ContactPointSample| point.gap < 1e-6;
     let of_mine = points
         .iter()
@@ -351,6 +355,5 @@ pub fn start_unknowns(system: &System, touching: Touching) -> Result<Vector> {
         write[first + 2 * k + 1] = if closed(point) { 0.0 } else { point.gap };
     }
     drop(write);
-    drop(local);
     Ok(unknowns)
 }

@@ -33,22 +33,15 @@ fn swing(
         displacement: &start,
         velocity: &|_| [0.0; 2],
     };
-    integrate(
-        world,
-        model,
-        &start,
-        radius,
-        steps,
-        move |system, t, u, v| {
-            let measures = system.measures(t, u, Some(v))?;
-            let (u, v) = (u.read()?, v.read()?);
-            Ok(Instant {
-                u: [u[2 * node], u[2 * node + 1]],
-                v: [v[2 * node], v[2 * node + 1]],
-                energy: measures.kinetic_energy + measures.strain_energy,
-            })
-        },
-    )
+    integrate(world, model, &start, radius, steps, move |now| {
+        let measures = now.measures()?;
+        let (u, v) = (now.u.read()?, now.rates.velocity.read()?);
+        Ok(Instant {
+            u: [u[2 * node], u[2 * node + 1]],
+            v: [v[2 * node], v[2 * node + 1]],
+            energy: measures.kinetic_energy + measures.strain_energy,
+        })
+    })
 }
 
 const BAR_LENGTH: f64 = 10.0;

@@ -16,6 +16,8 @@ pub struct Alpha2State {
     u: Vector,
     v: Vector,
     a: Vector,
+    /// The acceleration of the last step's equations.
+    stage: Vector,
     dt: f64,
     params: AlphaParameters,
     exact: bool,
@@ -33,6 +35,7 @@ impl Alpha2State {
             u: u.to_owned()?,
             v: v.to_owned()?,
             a: a.to_owned()?,
+            stage: a.to_owned()?,
             dt: 0.0,
             params: AlphaParameters::START,
             exact: true,
@@ -54,7 +57,12 @@ impl Alpha2State {
     /// # Errors
     /// If PETSc fails.
     pub fn accepted(&mut self, ts: &TsRef) -> Result<()> {
-        let AlphaParameters { gamma, beta, .. } = self.params;
+        let AlphaParameters {
+            alpha_m,
+            gamma,
+            beta,
+            ..
+        } = self.params;
         let dt = self.dt;
         let (u, v) = ts.solution2()?;
         let mut a = self.a.duplicate()?;
@@ -68,6 +76,8 @@ impl Alpha2State {
         self.exact &= computed.read()?[..] == v.read()?[..];
         self.u.copy_from(u)?;
         self.v.copy_from(v)?;
+        self.stage.waxpy(-1.0, &self.a, &a)?;
+        self.stage.aypx(alpha_m, &self.a)?;
         self.a = a;
         Ok(())
     }
@@ -81,6 +91,12 @@ impl Alpha2State {
     /// The velocity.
     pub fn velocity(&self) -> &VectorRef {
         &self.v
+    }
+
+    /// The acceleration with which the equations of the last step were solved, `a_0 + alpha_m (a_1 - a_0)`: in its
+    /// bits where PETSc began the step with the acceleration known here, and but for rounding in a start.
+    pub fn stage_acceleration(&self) -> &VectorRef {
+        &self.stage
     }
 
     /// The acceleration.

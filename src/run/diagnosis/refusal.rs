@@ -7,10 +7,10 @@ use petsc::SnesReason;
 use super::residual_history::ResidualHistory;
 use super::solve_watch::{Chattering, SolveWatch};
 use crate::mesh::SurfaceSide;
-use crate::system::{ContactPlace, FailedElement, System};
+use crate::system::{ContactPlace, ElementFailure, FailedElement, System};
 use crate::text::number;
 
-/// Every way in which a contact point can chatter; the place in this list marks it among the ranks.
+/// Every kind of chattering; the place in this list is its number among the ranks.
 const KINDS: [Chattering; 2] = [Chattering::OpenClose, Chattering::StickSlip];
 
 /// A Newton solve that did not converge. The same on every rank.
@@ -43,6 +43,7 @@ impl Refusal {
         reason: SnesReason,
         iterations: u32,
         tolerance: f64,
+        failure: Option<ElementFailure>,
     ) -> Self {
         let mark = |kind| u8::from(kind == KINDS[1]);
         let mine: Vec<_> = watch
@@ -61,7 +62,7 @@ impl Refusal {
                 .into_iter()
                 .map(|place| (place, KINDS[usize::from(place.mark)]))
                 .collect(),
-            element: system.take_shared_failure(),
+            element: FailedElement::over_ranks(system.comm(), failure),
         }
     }
 
@@ -70,7 +71,7 @@ impl Refusal {
         self.reason == SnesReason::DivergedIterations && self.element.is_none()
     }
 
-    /// The points that chatter in one way and where they are, in words; nothing if there are none.
+    /// The points that chatter so and where they are, in words; nothing if there are none.
     pub fn chattering_in_words(&self, kind: Chattering) -> Option<String> {
         let how = match kind {
             Chattering::OpenClose => "open and close",
@@ -92,7 +93,7 @@ impl Refusal {
         })
     }
 
-    /// Number and range of the points of one face that chatter in one way.
+    /// Number and range of the points of one face that chatter so.
     fn range_of(&self, kind: Chattering, side: SurfaceSide, place: &str) -> Option<String> {
         let points = self
             .chattering

@@ -1,4 +1,4 @@
-//! In: accepted steps and what can be told of them. Out: monitor, history, fields, figures and checkpoints, through the
+//! In: accepted steps and what is known of them. Out: monitor, history, fields, figures and checkpoints, through the
 //! writers of the output.
 //! Never: how a file is written, or a choice of the run.
 
@@ -17,7 +17,7 @@ use crate::output::{
     Arrays, ContactFile, History, Monitor, OutputDir, OutputError, SheetFile, SheetPart,
     StepRecord, ToolsFile, agree, checkpoint, history,
 };
-use crate::system::{NodeSample, System};
+use crate::system::{ContactPointSample, NodeSample, System};
 use crate::tool::PunchMotion;
 use figures::outline;
 pub(super) use figures::right_halves;
@@ -70,11 +70,7 @@ impl Recorder {
             _ => Ok(None),
         };
         let history = agree(comm, mine)?;
-        let points: Vec<[f64; 2]> = local
-            .contact_points(0.0, &vec![0.0; local.unknown_count()])
-            .iter()
-            .map(|point| point.reference)
-            .collect();
+        let points = local.contact_references();
         let part = SheetPart {
             coordinates: local.node_coordinates().to_vec(),
             quads: local.element_nodes().to_vec(),
@@ -188,7 +184,7 @@ impl Recorder {
         is_end || (self.every > 0 && self.records.len().is_multiple_of(self.every))
     }
 
-    /// Writes the fields at time `t` (ms) with the local values of the unknowns. Collective.
+    /// Writes the fields at time `t` (ms). Collective.
     ///
     /// # Errors
     /// If a file cannot be written.
@@ -196,13 +192,11 @@ impl Recorder {
         &mut self,
         t: f64,
         nodes: &[NodeSample],
-        system: &System,
-        values: &[f64],
+        points: &[ContactPointSample],
     ) -> Result<(), OutputError> {
         self.sheet.write(t, nodes)?;
         self.tools.write(t, self.motion.depth(t))?;
-        self.contact
-            .write(t, &system.local().contact_points(t, values))
+        self.contact.write(t, points)
     }
 
     /// Draws the deformed sheet between the tools at time `t` (ms), under the name `label`. Collective.

@@ -1,10 +1,14 @@
 //! Who solves the linear systems of the Newton iterations: our condensed solve, or PETSc by itself.
 
+use std::cell::RefCell;
 use std::rc::Rc;
 
-use petsc::{Failure, Matrix, SnesRef, options};
+use petsc::{CallbackError, Failure, Matrix, MatrixRef, SnesRef, VectorRef, options};
 
-use crate::system::{CondensedSolve, System};
+use crate::system::{
+    CondensedMethod, CondensedSolve, EvaluationError, History, JacobianEntries, SolverChoice,
+    System,
+};
 
 /// The nonlinear solver whose reduced set the condensed solve works on.
 const SOLVER: &str = "vinewtonrsls";
@@ -19,18 +23,29 @@ const PETSC_DEFAULTS: &[(&str, &str)] = &[
     ("mat_mumps_icntl_7", "0"),
 ];
 
+/// An option of the condensed system's solver.
+macro_rules! condensed {
+    ($option:literal) => {
+        concat!("condensed_", $option)
+    };
+}
+
 /// The direct solver of the condensed system.
-const PACKAGE: &str = "condensed_pc_factor_mat_solver_type";
+const PACKAGE: &str = condensed!("pc_factor_mat_solver_type");
+/// The only one that can work by substructures.
 const DEFAULT_PACKAGE: &str = "mumps";
 /// What it needs by default.
 const PACKAGE_DEFAULTS: &[(&str, &str)] = &[
     // METIS where MUMPS has it: the analysis is done once, so the fill counts. Debian's MUMPS has none and orders as it
     // would by itself: AMF for the benchmark, PORD for 680 x 20, where all its orderings are within 4 % in time.
-    ("condensed_mat_mumps_icntl_7", "5"),
+    (condensed!("mat_mumps_icntl_7"), "5"),
     // No permutation by the entries' sizes: the analysis must not depend on the matrix it happens to see first, which
     // after a restart is another one. MUMPS would choose none by itself on the benchmark.
-    ("condensed_mat_mumps_icntl_6", "0"),
+    (condensed!("mat_mumps_icntl_6"), "0"),
 ];
+
+/// Options that choose a solver of the whole condensed system.
+const CHOOSE_WHOLE: &[&str] = &[condensed!("ksp_type"), condensed!("pc_type")];
 
 /// Whether the option has the value that this program gave it for the linear solves.
 pub(super) fn is_default(name: &str, value: Option<&str>) -> bool {
@@ -52,62 +67,85 @@ const NEED_ENTRIES: &[&str] = &[
     "snes_mf_operator",
 ];
 
-/// The linear solve the options ask for.
+/// The linear solve the options ask for, with the Jacobian it works on.
 pub(in crate::run) struct LinearSolve {
-    condensed: Option<Rc<CondensedSolve>>,
+    system: Rc<System>,
+    entries: RefCell<JacobianEntries>,
+    condensed: Option<CondensedSolve>,
 }
 
 impl LinearSolve {
-    /// Decides by the options, and gives PETSc's own solve its defaults. Collective.
-    pub fn chosen(system: &Rc<System>) -> petsc::Result<Self> {
-        let other_solver = options::get("snes_type")?.is_some_and(|given| given != SOLVER);
-        if options::is_given(LEFT_TO_PETSC)? || other_solver {
-            for (name, value) in PETSC_DEFAULTS {
-                options::set_default(name, value)?;
-            }
-            return Ok(Self { condensed: None });
-        }
-        options::set_default(PACKAGE, DEFAULT_PACKAGE)?;
-        if options::get(PACKAGE)?.as_deref() == Some(DEFAULT_PACKAGE) {
-            for (name, value) in PACKAGE_DEFAULTS {
-                options::set_default(name, value)?;
-            }
-        }
-        let condensed = CondensedSolve::new(Rc::clone(system))?;
-        Ok(Self {
-            condensed: Some(Rc::new(condensed)),
-        })
+    /// Decides by the options, and sets the defaults of what is chosen. Collective.
+    pub fn chosen(system: &Rc<System>) -> petsc::Result<Rc<Self>> {
+        let choice = choose()?;
+        let condensed = choice.map(|choice| CondensedSolve::new(system, choice));
+        Ok(Rc::new(Self {
+            entries: RefCell::new(system.jacobian_entries()),
+            condensed: condensed.transpose()?,
+            system: Rc::clone(system),
+        }))
     }
 
     /// The Jacobian's matrix: without entries if nobody reads them.
-    pub fn matrix(&self, system: &System) -> petsc::Result<Matrix> {
+    pub fn matrix(&self) -> petsc::Result<Matrix> {
         let mut read = self.condensed.is_none();
         for name in NEED_ENTRIES {
             read |= options::is_given(name)?;
         }
         if read {
-            system.matrix()
+            self.system.matrix()
         } else {
-            system.placeholder_matrix()
+            self.system.placeholder_matrix()
         }
     }
 
+    /// Evaluates the Jacobian at time `t` and unknowns `u` for the next solve and, unless it is a placeholder, for
+    /// `out`; `shift` is the derivative of the acceleration by the unknown. Collective.
+    ///
+    /// # Errors
+    /// If PETSc fails, or if an element cannot be evaluated: the residual was evaluated there before.
+    pub fn evaluate(
+        &self,
+        history: &History,
+        t: f64,
+        u: &VectorRef,
+        shift: f64,
+        out: &mut MatrixRef,
+    ) -> Result<(), CallbackError> {
+        let mut entries = self.entries.borrow_mut();
+        let evaluated = self.system.jacobian(history, t, u, shift, &mut entries);
+        // Collective: every rank takes part, whatever happened on it.
+        if out.takes_values()? {
+            out.set_values_coo(entries.values())?;
+        }
+        evaluated.map_err(|error| match error {
+            EvaluationError::Petsc(error) => error.into(),
+            EvaluationError::Element(failure) => {
+                format!("the tangent cannot be evaluated where the residual was: {failure}").into()
+            }
+        })
+    }
+
     /// Makes the nonlinear solver use it. Call it before the solver reads its options.
-    pub fn install(&self, snes: &mut SnesRef) -> petsc::Result<()> {
-        let Some(condensed) = &self.condensed else {
+    pub fn install(self: &Rc<Self>, snes: &mut SnesRef) -> petsc::Result<()> {
+        if self.condensed.is_none() {
             return Ok(());
-        };
+        }
         snes.ksp_mut()?.set_type("preonly")?;
-        let (for_setup, for_apply) = (Rc::clone(condensed), Rc::clone(condensed));
+        let (for_setup, for_apply) = (Rc::clone(self), Rc::clone(self));
         snes.set_shell_preconditioner(
-            move |snes, _| {
-                if for_setup.factor(&snes.active_set()?)? {
-                    Ok(())
-                } else {
+            move |snes, _| match &for_setup.condensed {
+                Some(condensed)
+                    if !condensed.factor(&for_setup.entries.borrow(), &snes.active_set()?)? =>
+                {
                     Err(Failure::Domain)
                 }
+                _ => Ok(()),
             },
-            move |r, step| Ok(for_apply.solve(r, step)?),
+            move |r, step| match &for_apply.condensed {
+                Some(condensed) => Ok(condensed.solve(r, step)?),
+                None => Ok(()),
+            },
         )
     }
 
@@ -118,4 +156,36 @@ impl LinearSolve {
             None => snes.ksp()?.factor_solver(),
         }
     }
+}
+
+/// How the condensed solve is to be done by the options; none if they leave the linear systems to PETSc. Sets the
+/// defaults of what is chosen.
+fn choose() -> petsc::Result<Option<SolverChoice>> {
+    let other_solver = options::get("snes_type")?.is_some_and(|given| given != SOLVER);
+    if options::is_given(LEFT_TO_PETSC)? || other_solver {
+        set_defaults(PETSC_DEFAULTS)?;
+        return Ok(None);
+    }
+    options::set_default(PACKAGE, DEFAULT_PACKAGE)?;
+    let mut method = CondensedMethod::Whole;
+    if options::get(PACKAGE)?.as_deref() == Some(DEFAULT_PACKAGE) {
+        set_defaults(PACKAGE_DEFAULTS)?;
+        method = CondensedMethod::Substructures;
+    }
+    for name in CHOOSE_WHOLE {
+        if options::is_given(name)? {
+            method = CondensedMethod::Whole;
+        }
+    }
+    Ok(Some(SolverChoice {
+        method,
+        options_prefix: condensed!(""),
+    }))
+}
+
+fn set_defaults(defaults: &[(&str, &str)]) -> petsc::Result<()> {
+    for (name, value) in defaults {
+        options::set_default(name, value)?;
+    }
+    Ok(())
 }

@@ -1,76 +1,60 @@
 //! One simulation: PETSc's time stepper with our residual, and what happens around each step.
 
+mod accepted;
+mod attempt;
+
+mod equations;
+mod interruption;
+mod progress;
 mod resume;
 mod solve;
 mod step;
-mod stepper;
 
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::path::PathBuf;
 use std::rc::Rc;
 
-use petsc::{Alpha2State, Ts, TsReason, Vector};
+use petsc::{Alpha2State, Ts, TsReason};
 
 use super::RunError;
 use super::checkpoint::{Resumed, RunState, hardening_checksum};
-use super::diagnosis::{Refusal, SolveWatch};
-use super::ledger::{Counts, Ledger, Spent};
-use super::newton::{Damping, TangentInertia};
+use super::diagnosis::Refusal;
+use super::ledger::{Counts, Spent};
 use super::recorder::Recorder;
 use super::setup::{LinearSolve, defaults};
 use super::springback::Springback;
 use super::step_size::StepControl;
 use super::stop_watch::StopWatch;
 use crate::case::{Case, Dynamics};
-use crate::contact::ContactState;
-use crate::system::{FieldSampler, System};
+use crate::system::{History, System};
 use crate::tool::PunchMotion;
+use accepted::Accepted;
+use attempt::Attempt;
+use progress::Progress;
 
-pub use resume::Interruption;
-pub(super) use stepper::not_evaluated;
+pub use interruption::Interruption;
 
 /// What the hooks of the time stepper share.
 pub(super) struct Simulation {
+    settings: Settings,
+    progress: RefCell<Progress>,
+}
+
+/// What stays as it is during a run.
+struct Settings {
     system: Rc<System>,
-    sampler: FieldSampler,
-    recorder: RefCell<Recorder>,
-    control: RefCell<StepControl>,
-    ledger: RefCell<Ledger>,
-    damping: RefCell<Damping>,
-    inertia: Rc<TangentInertia>,
-    watch: RefCell<SolveWatch>,
+    dynamics: Dynamics,
+    motion: PunchMotion,
     /// Absolute tolerance on the residual norm, mm, and most iterations of a solve.
     tolerance: f64,
     most_iterations: usize,
-    /// Solution before the last accepted step, and the length of that step (ms); none at the start
-    /// and where the punch turns.
-    before: RefCell<Option<(Vector, f64)>>,
-    /// The last accepted solution.
-    accepted: RefCell<Vector>,
-    accepted_time: Cell<f64>,
+    /// Shortest step, ms.
+    least_step: f64,
     extrapolate: bool,
     show_iterations: bool,
-    /// States of this rank's contact points at the last iteration shown.
-    states: RefCell<Vec<ContactState>>,
-    /// Length of the step being tried, ms.
-    attempted: Cell<f64>,
-    /// Time it is to reach, ms.
-    attempted_time: Cell<f64>,
-    /// Largest displacement expected of it, mm.
-    expected: Cell<f64>,
-    least_step: f64,
-    motion: PunchMotion,
-    /// Solves of the present step so far.
-    refusals: RefCell<Vec<Refusal>>,
-    counts: Cell<Counts>,
-    springbacks: RefCell<Vec<Springback>>,
-    /// Velocity and acceleration; none in statics.
-    alpha: RefCell<Option<Alpha2State>>,
-    stop_watch: RefCell<StopWatch>,
     spent: Spent,
     /// What a checkpoint says about the case it belongs to.
     identity: RunState,
-    interruption: RefCell<Option<Interruption>>,
 }
 
 /// How a simulation ended.
@@ -89,60 +73,42 @@ pub(super) struct Finish {
 }
 
 impl Simulation {
+    /// Of a sheet with this history, from the start or from a checkpoint.
     pub(super) fn new(
         case: &Case,
         system: Rc<System>,
+        history: History,
         recorder: Recorder,
         landmarks: Vec<f64>,
         stop_watch: StopWatch,
         spent: Spent,
     ) -> Result<Self, RunError> {
         let stepping = &case.stepping;
-        let accepted = system.initial_unknowns()?;
-        let sampler = system.local().field_sampler();
-        Ok(Self {
-            sampler,
-            recorder: RefCell::new(recorder),
-            control: RefCell::new(StepControl::new(
-                stepping.dt_initial,
-                stepping.dt_max,
-                landmarks,
-            )),
-            ledger: RefCell::default(),
-            damping: RefCell::default(),
-            inertia: Rc::new(TangentInertia::own()),
-            watch: RefCell::default(),
+        let progress = Progress {
+            accepted: Accepted::start(system.initial_unknowns()?, history),
+            attempt: Attempt::default(),
+            refusals: Vec::new(),
+            control: StepControl::new(stepping.dt_initial, stepping.dt_max, landmarks),
+            stop_watch,
+            recorder,
+            shown: Vec::new(),
+            interruption: None,
+        };
+        let settings = Settings {
+            system,
+            dynamics: case.loading.dynamics,
+            motion: case.loading.motion(),
             tolerance: stepping.newton_tolerance,
             most_iterations: stepping.newton_max_iterations,
-            before: RefCell::new(None),
-            accepted: RefCell::new(accepted),
-            accepted_time: Cell::new(0.0),
+            least_step: stepping.dt_min,
             extrapolate: stepping.extrapolate,
             show_iterations: case.output.iterations,
-            states: RefCell::default(),
-            attempted: Cell::new(0.0),
-            attempted_time: Cell::new(0.0),
-            expected: Cell::new(0.0),
-            least_step: stepping.dt_min,
-            motion: case.loading.motion(),
-            refusals: RefCell::default(),
-            counts: Cell::default(),
-            springbacks: RefCell::default(),
-            alpha: RefCell::new(None),
-            stop_watch: RefCell::new(stop_watch),
             spent,
-            identity: RunState {
-                options: case
-                    .options()
-                    .into_iter()
-                    .map(|(name, value)| (name.to_owned(), value))
-                    .collect(),
-                hardening: hardening_checksum(case),
-                revision: env!("SSNP155_REVISION").to_owned(),
-                ..RunState::default()
-            },
-            interruption: RefCell::new(None),
-            system,
+            identity: identity(case),
+        };
+        Ok(Self {
+            settings,
+            progress: RefCell::new(progress),
         })
     }
 
@@ -153,49 +119,69 @@ impl Simulation {
         case: &Case,
         resumed: Option<&Resumed>,
     ) -> Result<Finish, RunError> {
+        let system = &self.settings.system;
         defaults::set(case)?;
-        let mut ts = Ts::new(self.system.comm())?;
-        let linear = LinearSolve::chosen(&self.system)?;
-        self.set_problem(&mut ts, case.loading.dynamics, linear.matrix(&self.system)?)?;
+        let mut ts = Ts::new(system.comm())?;
+        let linear = LinearSolve::chosen(system)?;
+        self.set_problem(&mut ts, &linear)?;
         self.set_hooks(&mut ts)?;
-        let (lower, upper) = self.system.bounds()?;
+        let (lower, upper) = system.bounds()?;
         ts.snes_mut()?.set_type("vinewtonrsls")?;
         linear.install(ts.snes_mut()?)?;
         ts.set_from_options()?;
         ts.snes_mut()?.set_variable_bounds(&lower, &upper)?;
-        ts.set_max_time(self.control.borrow().end())?;
-        if case.loading.dynamics == Dynamics::Slow {
-            let at_rest = self.system.vector()?;
-            self.alpha.replace(Some(Alpha2State::new(&ts, &at_rest)?));
-        }
-        match resumed {
-            Some(resumed) => self.put_back(&mut ts, resumed)?,
-            None => self.write_fields(0.0, &self.accepted.borrow(), None)?,
-        }
-        ts.set_time_step(self.control.borrow().planned())?;
-        self.recorder.borrow_mut().begin(resumed);
+        ts.set_max_time(self.progress.borrow().control.end())?;
+        self.begin(&mut ts, resumed)?;
         let reason = self.solve(&mut ts)?;
-        let given_up = reason.is_diverged() && self.counts.get().steps > 0;
-        let checkpoint = if given_up && self.stop_watch.borrow().saves_regularly() {
-            Some(self.save()?)
-        } else {
-            None
-        };
+        let checkpoint = self.save_before_failure(reason)?;
         let factor_solver = linear.factor_solver(ts.snes()?)?;
+        let progress = &mut *self.progress.borrow_mut();
         Ok(Finish {
             reason,
-            counts: self.counts.get(),
-            refusals: self.refusals.take(),
-            time: self.accepted_time.get(),
-            springbacks: self.springbacks.take(),
-            interruption: self.interruption.take(),
+            counts: progress.accepted.counts,
+            refusals: std::mem::take(&mut progress.refusals),
+            time: progress.accepted.time,
+            springbacks: std::mem::take(&mut progress.accepted.springbacks),
+            interruption: progress.interruption.take(),
             checkpoint,
             factor_solver,
         })
     }
 
-    /// Gives the recorder back when the time stepper is gone.
+    /// Puts the time stepper at the start or at the state of a checkpoint.
+    fn begin(&self, ts: &mut Ts, resumed: Option<&Resumed>) -> Result<(), RunError> {
+        if self.settings.dynamics == Dynamics::Slow {
+            let at_rest = self.settings.system.vector()?;
+            self.progress.borrow_mut().accepted.rates = Some(Alpha2State::new(ts, &at_rest)?);
+        }
+        match resumed {
+            Some(resumed) => self.put_back(ts, resumed)?,
+            None => {
+                let start = self.progress.borrow().accepted.unknowns.to_owned()?;
+                self.write_fields(0.0, &start, None)?;
+            }
+        }
+        let progress = &mut *self.progress.borrow_mut();
+        ts.set_time_step(progress.control.planned())?;
+        progress.recorder.begin(resumed);
+        Ok(())
+    }
+
+    /// The recorder, when the time stepper is gone.
     pub(super) fn into_recorder(self) -> Recorder {
-        self.recorder.into_inner()
+        self.progress.into_inner().recorder
+    }
+}
+
+fn identity(case: &Case) -> RunState {
+    RunState {
+        options: case
+            .options()
+            .into_iter()
+            .map(|(name, value)| (name.to_owned(), value))
+            .collect(),
+        hardening: hardening_checksum(case),
+        revision: env!("SSNP155_REVISION").to_owned(),
+        ..RunState::default()
     }
 }

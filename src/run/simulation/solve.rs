@@ -1,17 +1,18 @@
-//! What happens within one Newton solve: where it starts, how far its steps go, when it is done or
-//! given up.
+//! What happens around and within one Newton solve: where it starts, when it has converged, and what becomes of one that
+//! has not.
 
 use petsc::{
     CallbackError, ConvergenceCheck, LineSearchInfo, SnesReason, SnesRef, TsRef, VectorRef,
 };
 
 use super::Simulation;
+use super::attempt::Attempt;
+use crate::ranks;
 use crate::run::diagnosis::{Refusal, SolveWatch};
 use crate::run::ledger::LEAST_FORCE;
-use crate::run::newton::limited_length;
 use crate::run::setup::defaults;
 
-/// Largest imbalance and largest pull of a contact point after a converged solve, as a share of the
+/// Largest imbalance and largest tensile force of a contact point after a converged solve, as a share of the
 /// last punch force.
 const BALANCE_SHARE: f64 = 3e-7;
 /// A residual norm (mm) that rounding may keep a second iteration from lowering.
@@ -19,7 +20,7 @@ const ROUNDING: f64 = 1e-12;
 
 impl Simulation {
     /// A small residual is not enough: its vertical sum is the imbalance of the tools' forces, which
-    /// must be small against those; and a point about to open may pull within the tolerance.
+    /// must be small against those; and the force of a point about to open may be tensile within the tolerance.
     pub(super) fn balanced(
         &self,
         snes: &SnesRef,
@@ -29,20 +30,17 @@ impl Simulation {
         if check.default != SnesReason::ConvergedAbsolute {
             return Ok(check.default);
         }
-        let low = |norms: &[f64]| norms.iter().all(|&norm| norm <= ROUNDING);
-        if self
-            .watch
-            .borrow()
-            .norms()
-            .last_chunk::<2>()
-            .is_some_and(|last| low(last))
-        {
+        let progress = &*self.progress.borrow();
+        let low = |norms: &[f64; 2]| norms.iter().all(|&norm| norm <= ROUNDING);
+        if progress.attempt.watch.norms().last_chunk().is_some_and(low) {
             return Ok(check.default);
         }
-        let imbalance = self.system.vertical_sum(snes.function()?)?;
-        let limit = BALANCE_SHARE * self.ledger.borrow().force().abs().max(LEAST_FORCE);
-        let pull = self.system.strongest_pull(snes.solution()?)?;
-        Ok(if imbalance.abs() <= limit && pull <= limit {
+        let system = &self.settings.system;
+        let imbalance = system.vertical_sum(snes.function()?)?;
+        let force = progress.accepted.ledger.force();
+        let limit = BALANCE_SHARE * force.abs().max(LEAST_FORCE);
+        let tensile = system.largest_tensile_force(snes.solution()?)?;
+        Ok(if imbalance.abs() <= limit && tensile <= limit {
             check.default
         } else {
             SnesReason::Iterating
@@ -51,70 +49,44 @@ impl Simulation {
 
     fn watch_solve(&self, snes: &SnesRef, check: &ConvergenceCheck) -> Result<(), CallbackError> {
         let iteration = check.iteration.unsigned_abs() as usize;
-        let mut watch = self.watch.borrow_mut();
+        let progress = &mut *self.progress.borrow_mut();
+        let Attempt { watch, time, .. } = &mut progress.attempt;
         watch.residual(iteration, check.residual_norm);
-        if SolveWatch::looks(iteration, self.most_iterations) {
-            let t = self.attempted_time.get();
-            watch.states(self.system.contact_states(t, snes.solution()?)?);
+        if SolveWatch::looks(iteration, self.settings.most_iterations) {
+            let (system, history) = (&self.settings.system, &progress.accepted.history);
+            watch.states(system.contact_states(history, *time, snes.solution()?)?);
         }
         Ok(())
     }
 
     pub(super) fn before_solve(&self, ts: &mut TsRef, t: f64) -> Result<(), CallbackError> {
-        if let Some(alpha) = &mut *self.alpha.borrow_mut() {
-            alpha.attempt(ts)?;
-        }
-        self.attempted_time.set(t);
         let dt = ts.time_step()?;
-        self.attempted.set(dt);
-        self.inertia.reset();
-        self.expected.set(self.expected_displacement(t, dt)?);
+        let progress = &mut *self.progress.borrow_mut();
+        if let Some(rates) = &mut progress.accepted.rates {
+            rates.attempt(ts)?;
+        }
+        let (system, motion) = (&self.settings.system, &self.settings.motion);
+        let accepted = &progress.accepted;
+        let expected = accepted.expected_displacement(system, motion, t, dt)?;
+        progress.attempt = Attempt::new(t, dt, expected);
         Ok(())
     }
 
-    /// Length of a Newton step: damped where the solve stagnates, and limited where it would carry the
-    /// sheet much farther than the step in time does.
+    /// Length of a Newton step.
     pub(super) fn step_length(&self, info: &LineSearchInfo<'_>) -> Result<f64, CallbackError> {
         let iteration = info.iteration.unsigned_abs() as usize;
-        let damped = self
-            .damping
-            .borrow_mut()
-            .step_length(iteration, info.residual_norm);
-        let correction = self.system.largest_displacement(info.step)?;
-        let limited = limited_length(iteration, correction, self.expected.get());
-        self.inertia.follow(limited);
-        Ok(damped.min(limited))
+        let correction = self.settings.system.largest_displacement(info.step)?;
+        let attempt = &mut self.progress.borrow_mut().attempt;
+        Ok(attempt.step_length(iteration, info.residual_norm, correction))
     }
 
-    /// The largest displacement that a step of length `dt` (ms) is expected to bring, mm: that of the
-    /// punch, or of the sheet if it moved faster in the last step.
-    pub(super) fn expected_displacement(&self, t: f64, dt: f64) -> Result<f64, CallbackError> {
-        let punch = (self.motion.depth(t) - self.motion.depth(t - dt)).abs();
-        let before = self.before.borrow();
-        let Some((before, last_dt)) = before.as_ref() else {
-            return Ok(punch);
-        };
-        let mut motion = self.accepted.borrow().to_owned()?;
-        motion.axpy(-1.0, before)?;
-        Ok(punch.max(self.system.largest_displacement(&motion)? * dt / last_dt))
-    }
-
-    /// Moves the start of a solve on along the last step: displacements only, with multipliers, gaps
-    /// and so the active set as they were. Not after a refused solve, nor where the punch turns.
-    pub(super) fn extrapolate(&self, guess: &mut VectorRef) -> Result<(), CallbackError> {
-        let before = self.before.borrow();
-        let Some((before, last_dt)) = before.as_ref() else {
-            return Ok(());
-        };
-        if !self.extrapolate || !self.refusals.borrow().is_empty() {
-            return Ok(());
-        }
-        let ratio = self.attempted.get() / last_dt;
-        let accepted = self.accepted.borrow();
-        let (now, before) = (accepted.read()?, before.read()?);
-        let mut guess = guess.write()?;
-        for i in 0..self.system.owned_displacements() {
-            guess[i] = now[i] + ratio * (now[i] - before[i]);
+    /// Where a solve starts: not beyond the last accepted state after a refused solve.
+    pub(super) fn first_guess(&self, guess: &mut VectorRef) -> Result<(), CallbackError> {
+        let progress = &*self.progress.borrow();
+        if self.settings.extrapolate && progress.refusals.is_empty() {
+            let displacements = self.settings.system.owned_displacements();
+            let dt = progress.attempt.dt;
+            progress.accepted.extrapolate(dt, displacements, guess)?;
         }
         Ok(())
     }
@@ -124,16 +96,20 @@ impl Simulation {
         let snes: &SnesRef = ts.snes()?;
         let reason: SnesReason = snes.converged_reason()?;
         let iterations = snes.iteration_number()?.unsigned_abs();
-        let mut counts = self.counts.get();
-        counts.newton += u64::from(iterations);
-        if reason.is_diverged() {
-            counts.refused += 1;
-            self.refuse(t, ts.time_step()?, reason, iterations);
+        let dt = ts.time_step()?;
+        let refused = reason.is_diverged();
+        let started = {
+            let counts = &mut self.progress.borrow_mut().accepted.counts;
+            counts.newton += u64::from(iterations);
+            counts.refused += u64::from(refused);
+            counts.steps > 0
+        };
+        if refused {
+            self.refuse(t, dt, reason, iterations);
         }
-        self.counts.set(counts);
         // PETSc would go on shortening the step, or repeating the first one: stop it where it must not.
-        let next = ts.time_step()? * defaults::CUT_BACK;
-        if reason.is_diverged() && (counts.steps == 0 || next < self.least_step) {
+        let next = dt * defaults::CUT_BACK;
+        if refused && (!started || next < self.settings.least_step) {
             ts.set_max_step_rejections(0)?;
         }
         Ok(())
@@ -141,18 +117,19 @@ impl Simulation {
 
     /// Notes a solve that did not converge, and shows it. Collective.
     fn refuse(&self, t: f64, dt: f64, reason: SnesReason, iterations: u32) {
-        let watch = self.watch.borrow();
+        let progress = &mut *self.progress.borrow_mut();
         let refusal = Refusal::new(
-            &self.system,
-            &watch,
+            &self.settings.system,
+            &progress.attempt.watch,
             (t, dt),
             reason,
             iterations,
-            self.tolerance,
+            self.settings.tolerance,
+            progress.attempt.failure.take(),
         );
-        let mut recorder = self.recorder.borrow_mut();
-        recorder.show(&format!("         refused: {refusal}\n"));
-        self.refusals.borrow_mut().push(refusal);
+        let text = format!("         refused: {refusal}\n");
+        progress.recorder.show(&text);
+        progress.refusals.push(refusal);
     }
 
     pub(super) fn show_iteration(
@@ -161,26 +138,25 @@ impl Simulation {
         iteration: i32,
         norm: f64,
     ) -> Result<(), CallbackError> {
-        let now = self
-            .system
-            .contact_states(self.attempted_time.get(), snes.solution()?)?;
-        let mut before = self.states.borrow_mut();
+        let system = &self.settings.system;
+        let progress = &mut *self.progress.borrow_mut();
+        let (history, time) = (&progress.accepted.history, progress.attempt.time);
+        let now = system.contact_states(history, time, snes.solution()?)?;
+        let before = std::mem::replace(&mut progress.shown, now);
+        let now = &progress.shown;
         let changed = if before.len() == now.len() {
-            now.iter()
-                .zip(before.iter())
-                .filter(|(a, b)| a != b)
-                .count()
+            now.iter().zip(&before).filter(|(a, b)| a != b).count()
         } else {
             0
         };
-        let counts = self.system.count_over_ranks([
+        let mine = [
             now.iter().filter(|state| state.is_closed()).count(),
             now.iter().filter(|state| state.slips()).count(),
             changed,
-        ]);
-        let [active, slipping, changed] = counts;
-        *before = now;
-        self.recorder.borrow_mut().show(&format!(
+        ];
+        let [active, slipping, changed] =
+            ranks::sums(system.comm(), mine.map(|count| count as u64));
+        progress.recorder.show(&format!(
             "    {iteration:>3}  residual {norm:.3e} mm  {active} points in contact, \
              {slipping} slip, {changed} changed\n"
         ));

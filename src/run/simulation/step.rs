@@ -1,4 +1,4 @@
-//! What happens after an accepted step: the history is committed, the row and the fields are written, the next step is
+//! What happens after an accepted step: the history moves on, the row and the fields are written, the next step is
 //! planned.
 
 use petsc::{CallbackError, TsReason, TsRef, VectorRef};
@@ -6,7 +6,8 @@ use petsc::{CallbackError, TsReason, TsRef, VectorRef};
 use super::Simulation;
 use crate::output::StepRecord;
 use crate::run::ledger::StepEffort;
-use crate::run::springback::springback;
+use crate::run::springback::ReleasedSheet;
+use crate::system::Rates;
 
 impl Simulation {
     /// Takes an accepted step, and plans the next one unless the run ends here.
@@ -14,77 +15,79 @@ impl Simulation {
         if ts.converged_reason()?.is_diverged() {
             return Ok(());
         }
-        if let Some(alpha) = &mut *self.alpha.borrow_mut() {
-            alpha.accepted(ts)?;
-        }
         let t = ts.time()?;
-        let dt = t - self.accepted_time.get();
+        let dt = t - self.progress.borrow().accepted.time;
         let record = self.accept(ts, t, dt)?;
-        let (next, ended) = {
-            let mut control = self.control.borrow_mut();
+        let (next, label, fields_due) = {
+            let progress = &mut *self.progress.borrow_mut();
+            let control = &mut progress.control;
             let next = control.accepted(t, dt, record.newton_iterations as usize);
-            (next, control.is_at(t, control.end()))
+            let ended = control.is_at(t, control.end());
+            let label = if control.is_at(t, self.settings.motion.time_load) {
+                Some("full stroke")
+            } else {
+                ended.then_some("end")
+            };
+            let next = (!ended).then_some(next);
+            (next, label, progress.recorder.fields_due(label.is_some()))
         };
-        let turning = self.control.borrow().is_at(t, self.motion.time_load);
-        let label = match (turning, ended) {
-            (true, _) => Some("full stroke"),
-            (false, true) => Some("end"),
-            (false, false) => None,
-        };
-        if self.recorder.borrow().fields_due(label.is_some()) {
+        if fields_due {
             self.write_fields(t, ts.solution()?, label)?;
         }
         if label.is_some() {
-            let found = springback(&self.system, t, ts.solution()?)?;
-            self.springbacks.borrow_mut().extend(found);
+            self.release_tools(t, ts.solution()?)?;
         }
-        if ended {
-            ts.set_converged_reason(TsReason::ConvergedTime)?;
-        } else {
-            ts.set_time_step(next)?;
-            self.save_or_stop(ts)?;
+        match next {
+            Some(next) => {
+                ts.set_time_step(next)?;
+                self.save_or_stop(ts)
+            }
+            None => Ok(ts.set_converged_reason(TsReason::ConvergedTime)?),
         }
-        Ok(())
     }
 
-    /// Commits the history at an accepted solution and writes its row.
+    /// Moves the accepted state on to the solution of the time stepper, and writes its row.
     fn accept(&self, ts: &TsRef, t: f64, dt: f64) -> Result<StepRecord, CallbackError> {
-        let solution = ts.solution()?;
-        let velocity = self.velocity(ts)?;
-        self.system.commit(t, solution)?;
-        let measures = self.system.measures(t, solution, velocity)?;
-        let refused = self.refusals.take().len();
+        let (solution, system) = (ts.solution()?, &self.settings.system);
+        let progress = &mut *self.progress.borrow_mut();
+        let accepted = &mut progress.accepted;
+        accepted.history = system.advance(&accepted.history, t, solution)?;
+        let measures = match &mut accepted.rates {
+            Some(rates) => {
+                rates.accepted(ts)?;
+                let rates = Rates {
+                    velocity: rates.velocity(),
+                    acceleration: rates.stage_acceleration(),
+                };
+                system.measures(&accepted.history, t, solution, Some(rates))?
+            }
+            None => system.measures(&accepted.history, t, solution, None)?,
+        };
+        let refused = std::mem::take(&mut progress.refusals).len();
         let effort = StepEffort {
             t,
             dt,
-            depth: self.motion.depth(t),
+            depth: self.settings.motion.depth(t),
             newton_iterations: ts.snes()?.iteration_number()?.unsigned_abs(),
             residual_norm: ts.snes()?.function_norm()?,
             refused_solves: u32::try_from(refused)?,
         };
-        let record = self.ledger.borrow_mut().record(&effort, &measures);
-        self.recorder.borrow_mut().step(&record)?;
-        let mut counts = self.counts.get();
-        counts.steps += 1;
-        self.counts.set(counts);
-        self.remember(solution, t, dt)?;
+        let record = accepted.ledger.record(&effort, &measures);
+        progress.recorder.step(&record)?;
+        let turned = progress.control.is_at(t, self.settings.motion.time_load);
+        accepted.move_on(solution, t, dt, turned)?;
         Ok(record)
     }
 
-    fn velocity<'a>(&self, ts: &'a TsRef) -> Result<Option<&'a VectorRef>, CallbackError> {
-        if self.system.local().problem().density > 0.0 {
-            Ok(Some(ts.solution2()?.1))
-        } else {
-            Ok(None)
-        }
-    }
-
-    fn remember(&self, solution: &VectorRef, t: f64, dt: f64) -> Result<(), CallbackError> {
-        let turned = self.control.borrow().is_at(t, self.motion.time_load);
-        let before = self.accepted.replace(solution.to_owned()?);
-        self.before
-            .replace(if turned { None } else { Some((before, dt)) });
-        self.accepted_time.set(t);
+    /// Finds out to where the sheet would spring back from here.
+    fn release_tools(&self, t: f64, solution: &VectorRef) -> Result<(), CallbackError> {
+        let sheet = {
+            let history = &self.progress.borrow().accepted.history;
+            ReleasedSheet::new(&self.settings.system, history, t, solution)?
+        };
+        let found = sheet.spring_back()?;
+        let accepted = &mut self.progress.borrow_mut().accepted;
+        accepted.springbacks.extend(found);
         Ok(())
     }
 
@@ -94,12 +97,15 @@ impl Simulation {
         solution: &VectorRef,
         label: Option<&str>,
     ) -> Result<(), CallbackError> {
-        let values = self.system.local_values(solution)?;
-        let nodes = self.system.node_samples(&self.sampler, t, &values)?;
-        let mut recorder = self.recorder.borrow_mut();
-        recorder.fields(t, &nodes, &self.system, &values)?;
+        let system = &self.settings.system;
+        let progress = &mut *self.progress.borrow_mut();
+        let (history, recorder) = (&progress.accepted.history, &mut progress.recorder);
+        let values = system.local_values(solution)?;
+        let nodes = system.node_samples(history, t, &values)?;
+        let points = system.local().contact_points(history, t, &values);
+        recorder.fields(t, &nodes, &points)?;
         if let Some(label) = label {
-            recorder.shape(label, t, &nodes, &self.system)?;
+            recorder.shape(label, t, &nodes, system)?;
         }
         Ok(())
     }

@@ -1,37 +1,47 @@
 //! The linear solve of a Newton step on the reduced set, without its contact unknowns.
 //!
 //! The condensed matrix has the same pattern for the whole run, so a direct solver analyses it once.
-//! PETSc's options for its solver begin with `-condensed_`. On more than one rank the system is solved by
-//! [substructures](super::substructures) unless the options choose otherwise.
 
 use std::cell::RefCell;
-use std::rc::Rc;
 
 use mpi::traits::Communicator;
-use petsc::{Ksp, Matrix, Scatter, Vector, VectorRef, options};
+use petsc::{FactorKind, Ksp, Matrix, Scatter, Vector, VectorRef};
 
 use super::System;
-use super::elimination::{CondensedPattern, Elimination};
+use super::condensation::{Condensation, CondensedPattern};
 use super::substructures::Substructures;
+use super::tangent::JacobianEntries;
 
-/// Prefix of the options of the condensed system's solver.
-pub(super) const PREFIX: &str = "condensed_";
+/// How the condensed system is solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SolverChoice {
+    /// By whom.
+    pub method: CondensedMethod,
+    /// What PETSc's options for its solver begin with.
+    pub options_prefix: &'static str,
+}
 
-/// Options that choose a solver of the whole condensed system.
-const CHOICES: &[&str] = &["condensed_ksp_type", "condensed_pc_type"];
-/// The package of that solver, and the only one that substructures work with.
-const PACKAGE: (&str, &str) = ("condensed_pc_factor_mat_solver_type", "mumps");
+/// Who solves the condensed system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CondensedMethod {
+    /// [Substructures](super::substructures) where there is more than one rank and little between them, otherwise as
+    /// [`CondensedMethod::Whole`].
+    Substructures,
+    /// A linear solver of PETSc for the whole matrix.
+    Whole,
+}
 
-/// Solves with the last Jacobian of a [`System`] and an active set.
+/// Solves with a Jacobian and an active set.
 pub struct CondensedSolve {
-    system: Rc<System>,
     scatter: Scatter,
+    /// Displacements this rank owns.
+    owned: usize,
     parts: RefCell<Parts>,
 }
 
 /// What changes from solve to solve, allocated once.
 struct Parts {
-    elimination: Elimination,
+    condensation: Condensation,
     solver: Solver,
     right_side: Vector,
     step: Vector,
@@ -42,21 +52,22 @@ struct Parts {
 
 /// Who solves the condensed system.
 enum Solver {
-    /// A linear solver of PETSc, which the options choose.
+    /// A linear solver of PETSc.
     Whole(Matrix, Ksp),
     /// Each rank its own elements, and all together what is between them.
     Substructures(Box<Substructures>),
 }
 
 impl CondensedSolve {
-    /// Collective.
+    /// For the Jacobians of this system. Collective.
     ///
     /// # Errors
     /// If PETSc fails.
-    pub fn new(system: Rc<System>) -> petsc::Result<Self> {
-        let (comm, local, numbering) = (system.comm(), system.local(), &system.numbering);
-        let (elimination, pattern) = Elimination::new(&local, numbering, comm.rank() as usize);
-        let right_side = Vector::new(comm, system.owned_displacements())?;
+    pub fn new(system: &System, choice: SolverChoice) -> petsc::Result<Self> {
+        let (comm, local, numbering) = (system.comm(), system.local(), system.numbering());
+        let (condensation, pattern) = Condensation::new(local, numbering, comm.rank() as usize);
+        let owned = system.owned_displacements();
+        let right_side = Vector::new(comm, owned)?;
         let rows: Vec<i32> = local
             .nodes
             .iter()
@@ -64,35 +75,33 @@ impl CondensedSolve {
             .flat_map(|row| [row, row + 1])
             .collect();
         let parts = Parts {
-            solver: Solver::new(&system, pattern, &rows)?,
-            elimination,
+            solver: Solver::new(system, pattern, &rows, choice)?,
+            condensation,
             step: right_side.duplicate()?,
             local_step: vec![0.0; rows.len()],
             local_right_side: vec![0.0; rows.len()],
             right_side,
         };
         let scatter = Scatter::new(&parts.right_side, &rows)?;
-        drop(local);
         Ok(Self {
-            system,
             scatter,
+            owned,
             parts: RefCell::new(parts),
         })
     }
 
-    /// Factorises for the system's last Jacobian and this rank's active set (ascending global rows).
-    /// Says whether the matrix can be used. Collective.
+    /// Factorises for a Jacobian and this rank's active set (ascending global rows). Says whether the matrix can be
+    /// used. Collective.
     ///
     /// # Errors
     /// If PETSc fails.
-    pub fn factor(&self, active: &[i32]) -> petsc::Result<bool> {
+    pub fn factor(&self, jacobian: &JacobianEntries, active: &[i32]) -> petsc::Result<bool> {
         let Parts {
-            elimination,
+            condensation,
             solver,
             ..
         } = &mut *self.parts.borrow_mut();
-        let jacobian = self.system.jacobian_values();
-        let values = elimination.condense(&jacobian, active);
+        let values = condensation.condense(jacobian, active);
         match solver {
             Solver::Whole(matrix, solver) => {
                 matrix.set_values_coo(values)?;
@@ -109,7 +118,7 @@ impl CondensedSolve {
     /// If PETSc fails.
     pub fn solve(&self, r: &VectorRef, step: &mut VectorRef) -> petsc::Result<()> {
         let Parts {
-            elimination,
+            condensation,
             solver,
             right_side,
             step: condensed_step,
@@ -118,11 +127,11 @@ impl CondensedSolve {
             ..
         } = &mut *self.parts.borrow_mut();
         let r = r.read()?;
-        let owned = self.system.owned_displacements();
+        let owned = self.owned;
         right_side.write()?.copy_from_slice(&r[..owned]);
         // The row of a prescribed displacement is its step.
         self.scatter.forward(right_side, local_step)?;
-        elimination.forward(&r, local_step, local_right_side);
+        condensation.forward(&r, local_step, local_right_side);
         self.scatter.reverse_add(local_right_side, right_side)?;
         match solver {
             Solver::Whole(_, solver) => {
@@ -136,7 +145,7 @@ impl CondensedSolve {
         self.scatter.forward(condensed_step, local_step)?;
         let mut step = step.write()?;
         step[..owned].copy_from_slice(&condensed_step.read()?);
-        elimination.backward(&r, local_step, &mut step);
+        condensation.backward(&r, local_step, &mut step);
         Ok(())
     }
 
@@ -153,14 +162,21 @@ impl CondensedSolve {
 }
 
 impl Solver {
-    /// For a pattern in local displacements, whose rows are given.
-    fn new(system: &System, mut pattern: CondensedPattern, rows: &[i32]) -> petsc::Result<Self> {
-        let symmetric = system.local().problem.friction_coefficient == 0.0;
-        let mut free = options::get(PACKAGE.0)?.is_none_or(|package| package == PACKAGE.1);
-        for name in CHOICES {
-            free &= !options::is_given(name)?;
-        }
-        if free && let Some(solver) = Substructures::new(system, &pattern, symmetric)? {
+    /// For a pattern in local displacements, whose global rows these are.
+    fn new(
+        system: &System,
+        mut pattern: CondensedPattern,
+        rows: &[i32],
+        choice: SolverChoice,
+    ) -> petsc::Result<Self> {
+        let kind = match system.problem().friction_coefficient {
+            0.0 => FactorKind::Symmetric,
+            _ => FactorKind::General,
+        };
+        let prefix = choice.options_prefix;
+        if choice.method == CondensedMethod::Substructures
+            && let Some(solver) = Substructures::new(system, &pattern, kind, prefix)?
+        {
             return Ok(Self::Substructures(Box::new(solver)));
         }
         for index in pattern.rows.iter_mut().chain(&mut pattern.columns) {
@@ -172,18 +188,15 @@ impl Solver {
             &pattern.rows,
             &pattern.columns,
         )?;
-        let solver = whole(system.comm(), &matrix, symmetric)?;
+        let mut solver = Ksp::new(system.comm())?;
+        solver.set_options_prefix(prefix)?;
+        solver.set_operator(&matrix)?;
+        solver.set_type("preonly")?;
+        solver.set_preconditioner(match kind {
+            FactorKind::Symmetric => "cholesky",
+            FactorKind::General => "lu",
+        })?;
+        solver.set_from_options()?;
         Ok(Self::Whole(matrix, solver))
     }
-}
-
-/// The solver of the condensed system: a direct one, whose package and ordering the options choose.
-fn whole<C: Communicator>(comm: &C, matrix: &Matrix, symmetric: bool) -> petsc::Result<Ksp> {
-    let mut solver = Ksp::new(comm)?;
-    solver.set_options_prefix(PREFIX)?;
-    solver.set_operator(matrix)?;
-    solver.set_type("preonly")?;
-    solver.set_preconditioner(if symmetric { "cholesky" } else { "lu" })?;
-    solver.set_from_options()?;
-    Ok(solver)
 }

@@ -1,60 +1,87 @@
-//! The time stepper: the equations it is given, what it calls around each solve and step, and how it is started.
+//! The time stepper: the equations it solves, what it calls around each solve and step, and how it is started.
 
 use std::rc::Rc;
 
-use petsc::{CallbackError, Matrix, Ts, TsReason};
+use petsc::{CallbackError, Evaluation, MatrixRef, Ts, TsReason, VectorRef};
 
 use super::Simulation;
 use crate::case::Dynamics;
 use crate::run::RunError;
-use crate::run::setup::defaults;
+use crate::run::setup::{LinearSolve, defaults};
+use crate::system::EvaluationError;
 
 impl Simulation {
-    /// Gives it the equations and the state to start from.
+    /// Poses the equations and the state to start from.
     pub(super) fn set_problem(
         self: &Rc<Self>,
         ts: &mut Ts,
-        dynamics: Dynamics,
-        matrix: Matrix,
+        linear: &Rc<LinearSolve>,
     ) -> Result<(), RunError> {
-        let start = self.accepted.borrow();
-        let (for_residual, for_jacobian) = (Rc::clone(&self.system), Rc::clone(&self.system));
-        let inertia = Rc::clone(&self.inertia);
-        match dynamics {
+        let matrix = linear.matrix()?;
+        let start = &self.progress.borrow().accepted.unknowns.to_owned()?;
+        let (for_residual, for_jacobian) = (Rc::clone(self), Rc::clone(self));
+        let linear = Rc::clone(linear);
+        match self.settings.dynamics {
             Dynamics::Slow => {
                 ts.set_second_order(
-                    &start,
+                    start,
                     matrix,
                     move |t, u, _, a, out| for_residual.residual(t, u, Some(a), out),
                     move |t, u, _, _, _, shift, out| {
-                        for_jacobian
-                            .jacobian(t, u, inertia.multiple() * shift, out)
-                            .map_err(not_evaluated)
+                        for_jacobian.jacobian(&linear, t, u, shift, out)
                     },
                 )?;
-                let mut still = self.system.vector()?;
+                let mut still = self.settings.system.vector()?;
                 still.set_all(0.0)?;
-                ts.set_solution2(&start, &still)?;
+                ts.set_solution2(start, &still)?;
                 // Radius 0 puts contact, stress and inertia at the end of the step, and damps the
                 // frequencies the step cannot resolve within one step.
                 ts.alpha2_set_radius(0.0)?;
             }
             Dynamics::None => {
                 ts.set_implicit(
-                    &start,
+                    start,
                     matrix,
                     move |t, u, _, out| for_residual.residual(t, u, None, out),
-                    move |t, u, _, _, out| {
-                        for_jacobian.jacobian(t, u, 0.0, out).map_err(not_evaluated)
-                    },
+                    move |t, u, _, _, out| for_jacobian.jacobian(&linear, t, u, 0.0, out),
                 )?;
-                ts.set_solution(&start)?;
+                ts.set_solution(start)?;
             }
         }
         Ok(())
     }
 
-    /// Tells it what to call.
+    /// The residual from the last accepted state; the attempt keeps which element could not be evaluated.
+    fn residual(
+        &self,
+        t: f64,
+        u: &VectorRef,
+        a: Option<&VectorRef>,
+        out: &mut VectorRef,
+    ) -> Evaluation {
+        let progress = &mut *self.progress.borrow_mut();
+        let history = &progress.accepted.history;
+        let evaluated = self.settings.system.residual(history, t, u, a, out);
+        if let Err(EvaluationError::Element(failure)) = &evaluated {
+            progress.attempt.failure = Some(failure.clone());
+        }
+        Ok(evaluated?)
+    }
+
+    fn jacobian(
+        &self,
+        linear: &LinearSolve,
+        t: f64,
+        u: &VectorRef,
+        shift: f64,
+        out: &mut MatrixRef,
+    ) -> Result<(), CallbackError> {
+        let progress = &*self.progress.borrow();
+        let shift = progress.attempt.inertia() * shift;
+        linear.evaluate(&progress.accepted.history, t, u, shift, out)
+    }
+
+    /// Sets what it calls.
     pub(super) fn set_hooks(self: &Rc<Self>, ts: &mut Ts) -> Result<(), RunError> {
         let this = Rc::clone(self);
         ts.set_pre_stage(move |ts, t| this.before_solve(ts, t))?;
@@ -65,14 +92,14 @@ impl Simulation {
         let snes = ts.snes_mut()?;
         let this = Rc::clone(self);
         snes.set_convergence_test(move |snes, check| this.balanced(snes, check))?;
-        if self.show_iterations {
+        if self.settings.show_iterations {
             let this = Rc::clone(self);
             snes.set_monitor(move |snes, iteration, norm| {
                 this.show_iteration(snes, iteration, norm)
             })?;
         }
         let this = Rc::clone(self);
-        snes.set_initial_guess(move |guess| this.extrapolate(guess))?;
+        snes.set_initial_guess(move |guess| this.first_guess(guess))?;
         let this = Rc::clone(self);
         snes.set_shell_line_search(move |info| this.step_length(info))?;
         Ok(())
@@ -82,23 +109,16 @@ impl Simulation {
     /// refused it repeats them at the same length (`TSAlpha_Restart` puts the old one back, PETSc 3.18):
     /// the first step is shortened here.
     pub(super) fn solve(&self, ts: &mut Ts) -> Result<TsReason, RunError> {
-        let mut dt = self.control.borrow().planned();
+        let mut dt = self.progress.borrow().control.planned();
         loop {
             let reason = ts.solve()?;
             dt *= defaults::CUT_BACK;
-            if !reason.is_diverged() || self.counts.get().steps > 0 || dt < self.least_step {
+            let started = self.progress.borrow().accepted.counts.steps > 0;
+            if !reason.is_diverged() || started || dt < self.settings.least_step {
                 return Ok(reason);
             }
             ts.set_time_step(dt)?;
             ts.set_max_step_rejections(defaults::MOST_REJECTIONS)?;
         }
-    }
-}
-
-/// The tangent is asked for where the residual was evaluated before: it cannot fail alone.
-pub(in crate::run) fn not_evaluated(failure: petsc::Failure) -> CallbackError {
-    match failure {
-        petsc::Failure::Fatal(error) => error,
-        petsc::Failure::Domain => "the tangent cannot be evaluated where the residual was".into(),
     }
 }

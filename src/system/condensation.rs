@@ -1,28 +1,28 @@
 //! Static condensation: contact unknowns and prescribed displacements leave the linear system.
 //!
-//! A Newton step solves `J Δ = r`. With n the closure's slope and ε its give, each contact point has
+//! A Newton step solves `J Δ = r`. With n the closure's slope and ε its compliance, each contact point has
 //!
 //! ```text
 //! closure          n·Δu + ε Δλ - Δg = r_λ
 //! complementarity  m·Δu + b Δλ + c Δg = r_g        inactive points only: Δg = 0 where g is at its bound
 //! ```
 //!
-//! which always gives `Δλ = λ_0 - s·Δu`, because ε > 0. What is left is `(J_uu - J_uλ s) Δu = r_u -
+//! from which always `Δλ = λ_0 - s·Δu`, because ε > 0. What is left is `(J_uu - J_uλ s) Δu = r_u -
 //! J_uλ λ_0`: the pattern of the elements, whatever the active set. An open point has s = 0, and
 //! without friction the condensed matrix is symmetric.
 
-use super::pattern::{CONTACT_ENTRIES, CONTACT_LAYOUT as AT, ELEMENT_ENTRIES};
-use super::{LocalSystem, Numbering};
+use super::numbering::Numbering;
+use super::subdomain::Subdomain;
+use super::tangent::{CONTACT_LAYOUT as AT, JacobianEntries};
 
 /// Entries of one contact point in the condensed matrix.
 const CONDENSED_ENTRIES: usize = 36;
 
-/// The elimination on one rank, for one Jacobian and active set at a time.
-pub(super) struct Elimination {
+/// The condensation on one rank, for one Jacobian and active set at a time.
+pub(super) struct Condensation {
     points: Vec<EliminatedPoint>,
     /// First global row of this rank.
     first_row: i32,
-    elements: usize,
     /// Entries of the condensed matrix.
     values: Vec<f64>,
     known: Vec<KnownColumn>,
@@ -60,19 +60,15 @@ struct EliminatedPoint {
     /// λ_0 = `by_closure` r_λ + `by_complementarity` r_g.
     by_closure: f64,
     by_complementarity: f64,
-    /// The closure row, which gives the gap.
+    /// The closure row, from which the gap follows.
     closure_u: [f64; 6],
     closure_multiplier: f64,
     closure_gap: f64,
 }
 
-impl Elimination {
-    /// For one rank's share, with the pattern of its condensed entries.
-    pub fn new(
-        local: &LocalSystem,
-        numbering: &Numbering,
-        rank: usize,
-    ) -> (Self, CondensedPattern) {
+impl Condensation {
+    /// For one rank's subdomain, with the pattern of its condensed entries.
+    pub fn new(local: &Subdomain, numbering: &Numbering, rank: usize) -> (Self, CondensedPattern) {
         let mut prescribed = vec![false; 2 * local.nodes.len()];
         local
             .supports
@@ -115,23 +111,21 @@ impl Elimination {
         let this = Self {
             points,
             first_row: numbering.rank_rows[rank] as i32,
-            elements: local.elements.len(),
             values: vec![1.0; rows.len()],
             known,
         };
         (this, CondensedPattern { rows, columns })
     }
 
-    /// Takes over a Jacobian (entries in the order of [`LocalSystem::jacobian_pattern`]) and this
-    /// rank's active set (ascending global rows). Gives the condensed entries.
-    pub fn condense(&mut self, jacobian: &[f64], active: &[i32]) -> &[f64] {
-        let (elements, rest) = jacobian.split_at(ELEMENT_ENTRIES * self.elements);
+    /// Takes over a Jacobian and this rank's active set (ascending global rows). Returns the condensed entries.
+    pub fn condense(&mut self, jacobian: &JacobianEntries, active: &[i32]) -> &[f64] {
+        let elements = jacobian.of_elements();
         let (condensed_elements, condensed) = self.values.split_at_mut(elements.len());
         condensed_elements.copy_from_slice(elements);
         let mut active = active.iter().peekable();
         let mut active_before = 0;
-        let blocks = rest
-            .chunks_exact(CONTACT_ENTRIES)
+        let blocks = jacobian
+            .of_contacts()
             .zip(condensed.chunks_exact_mut(CONDENSED_ENTRIES));
         for (point, (entries, out)) in self.points.iter_mut().zip(blocks) {
             let gap = point.row + 1;

@@ -1,0 +1,191 @@
+//! The Jacobian of one rank's subdomain: its entries, and their rows and columns.
+
+use std::ops::Range;
+
+use super::error::ElementFailure;
+use super::history::History;
+use super::subdomain::{LocalValue, Subdomain};
+use crate::element::ElementForce;
+
+/// Entries of one element.
+const ELEMENT_ENTRIES: usize = 256;
+/// Entries of one contact point: 6 x 6 and 6 in the equilibrium rows, 8 in each of its own.
+const CONTACT_ENTRIES: usize = 58;
+
+/// Where the entries of a contact point are among its [`CONTACT_ENTRIES`].
+pub(super) struct ContactLayout {
+    pub force_u: Range<usize>,
+    pub force_multiplier: Range<usize>,
+    pub closure_u: Range<usize>,
+    pub closure_multiplier: usize,
+    pub closure_gap: usize,
+    pub complementarity_u: Range<usize>,
+    pub complementarity_multiplier: usize,
+    pub complementarity_gap: usize,
+}
+
+/// The order in which [`Subdomain::jacobian_pattern`] lists them.
+pub(super) const CONTACT_LAYOUT: ContactLayout = ContactLayout {
+    force_u: 0..36,
+    force_multiplier: 36..42,
+    closure_u: 42..48,
+    closure_multiplier: 48,
+    closure_gap: 49,
+    complementarity_u: 50..56,
+    complementarity_multiplier: 56,
+    complementarity_gap: 57,
+};
+
+/// One rank's contributions to the Jacobian, entry by entry in the order of [`Subdomain::jacobian_pattern`]. Whoever
+/// solves with a Jacobian owns them.
+#[derive(Clone, Debug)]
+pub struct JacobianEntries {
+    values: Vec<f64>,
+    element_count: usize,
+    contact_count: usize,
+}
+
+impl JacobianEntries {
+    /// Not yet evaluated.
+    pub fn new(of: &Subdomain) -> Self {
+        let (element_count, contact_count) = (of.elements.len(), of.contacts.len());
+        let count = ELEMENT_ENTRIES * element_count + CONTACT_ENTRIES * contact_count;
+        Self {
+            values: vec![0.0; count + of.supports.len()],
+            element_count,
+            contact_count,
+        }
+    }
+
+    /// All of them.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// Those of all elements, element by element.
+    pub(super) fn of_elements(&self) -> &[f64] {
+        &self.values[..ELEMENT_ENTRIES * self.element_count]
+    }
+
+    /// Those of each contact point, see [`CONTACT_LAYOUT`].
+    pub(super) fn of_contacts(&self) -> impl Iterator<Item = &[f64]> {
+        let first = ELEMENT_ENTRIES * self.element_count;
+        self.values[first..first + CONTACT_ENTRIES * self.contact_count]
+            .chunks_exact(CONTACT_ENTRIES)
+    }
+
+    fn parts(&mut self) -> (&mut [f64], &mut [f64], &mut [f64]) {
+        let (elements, rest) = self
+            .values
+            .split_at_mut(ELEMENT_ENTRIES * self.element_count);
+        let (contacts, supports) = rest.split_at_mut(CONTACT_ENTRIES * self.contact_count);
+        (elements, contacts, supports)
+    }
+}
+
+impl Subdomain {
+    /// Global rows and columns of all entries this rank contributes. Entries with a negative row are ignored by the
+    /// matrix: those of the fixed displacements.
+    pub fn jacobian_pattern(&self) -> (Vec<i32>, Vec<i32>) {
+        let mut free_rows = self.rows.clone();
+        for support in &self.supports {
+            free_rows[support.unknown] = -1;
+        }
+        let (mut rows, mut columns) = (Vec::new(), Vec::new());
+        let mut block = |row: &[i32], column: &[i32]| {
+            for &r in row {
+                for &c in column {
+                    rows.push(r);
+                    columns.push(c);
+                }
+            }
+        };
+        for nodes in &self.connectivity {
+            let local: [usize; 16] = std::array::from_fn(|i| 2 * nodes[i / 2] + i % 2);
+            block(&local.map(|i| free_rows[i]), &local.map(|i| self.rows[i]));
+        }
+        for (point, contact) in self.contacts.iter().enumerate() {
+            let local: [usize; 6] = std::array::from_fn(|i| 2 * contact.nodes[i / 2] + i % 2);
+            let u = local.map(|i| self.rows[i]);
+            let free_u = local.map(|i| free_rows[i]);
+            let multiplier = [self.rows[self.multiplier(point)]];
+            let gap = [self.rows[self.multiplier(point) + 1]];
+            block(&free_u, &u);
+            block(&free_u, &multiplier);
+            for own in [multiplier, gap] {
+                block(&own, &u);
+                block(&own, &multiplier);
+                block(&own, &gap);
+            }
+        }
+        for &LocalValue { unknown, .. } in &self.supports {
+            // The owner keeps a one on the diagonal; the others add nothing.
+            let row = if self.owned[unknown / 2] {
+                self.rows[unknown]
+            } else {
+                -1
+            };
+            rows.push(row);
+            columns.push(row);
+        }
+        (rows, columns)
+    }
+
+    /// Evaluates the entries at time `t` and unknowns `u`, with `shift` the derivative of the acceleration by the
+    /// unknown (1/ms²).
+    pub fn jacobian(
+        &self,
+        history: &History,
+        t: f64,
+        u: &[f64],
+        shift: f64,
+        entries: &mut JacobianEntries,
+    ) -> Result<(), ElementFailure> {
+        let scale = 1.0 / self.problem.young_modulus;
+        let inertia = scale * shift * self.problem.density;
+        let (elements, contacts, supports) = entries.parts();
+        let mut local = ElementForce::ZERO;
+        for (element, out) in elements.chunks_exact_mut(ELEMENT_ENTRIES).enumerate() {
+            self.element_force(history, element, u, true, &mut local)?;
+            let mass = self.kernels[element].mass();
+            for (i, row) in local.stiffness.iter().enumerate() {
+                let out = &mut out[16 * i..16 * (i + 1)];
+                for (value, stiffness) in out.iter_mut().zip(row) {
+                    *value = scale * stiffness;
+                }
+                for (b, m) in mass[i / 2].iter().enumerate() {
+                    out[2 * b + i % 2] += inertia * m;
+                }
+            }
+        }
+        for (point, out) in contacts.chunks_exact_mut(CONTACT_ENTRIES).enumerate() {
+            self.contact_jacobian(history, t, u, point, out);
+        }
+        supports.fill(1.0);
+        Ok(())
+    }
+
+    fn contact_jacobian(
+        &self,
+        history: &History,
+        t: f64,
+        u: &[f64],
+        point: usize,
+        out: &mut [f64],
+    ) {
+        use CONTACT_LAYOUT as AT;
+        let (contact, committed) = (&self.contacts[point], &history.friction[point]);
+        let multiplier = u[self.multiplier(point)];
+        let position = self.contact_position(contact, committed, t, u);
+        let traction = contact.law.traction(&position, multiplier, committed);
+        let tangent = contact.law.tangent(&position, multiplier, &traction);
+        out[AT.force_u].copy_from_slice(tangent.force_u.as_flattened());
+        out[AT.force_multiplier].copy_from_slice(&tangent.force_multiplier);
+        out[AT.closure_u].copy_from_slice(&tangent.closure_u);
+        out[AT.closure_multiplier] = tangent.compliance;
+        out[AT.closure_gap] = tangent.closure_gap;
+        out[AT.complementarity_u].copy_from_slice(&tangent.complementarity_u);
+        out[AT.complementarity_multiplier] = tangent.complementarity_multiplier;
+        out[AT.complementarity_gap] = tangent.complementarity_gap;
+    }
+}

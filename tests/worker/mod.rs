@@ -1,0 +1,55 @@
+//! Shared by the tests that call the library on several ranks: they start themselves by mpirun.
+
+use std::env;
+use std::process::{Command, ExitCode};
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+use petsc::Session;
+
+const WORKER: &str = "--worker";
+
+/// Runs `worker` on each of these numbers of ranks, and says whether it passed.
+pub fn on_ranks(name: &str, numbers: &[usize], worker: fn(&SimpleCommunicator)) -> ExitCode {
+    if env::args().any(|arg| arg == WORKER) {
+        work(worker);
+        return ExitCode::SUCCESS;
+    }
+    let mut held = true;
+    for ranks in numbers {
+        let status = Command::new("mpirun")
+            .args(["--timeout", "120", "-n", &ranks.to_string()])
+            .arg(env::current_exe().unwrap())
+            .arg(WORKER)
+            .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
+            .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
+            .env("OMPI_MCA_hwloc_base_binding_policy", "none")
+            .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
+            .env("OMPI_MCA_btl_vader_single_copy_mechanism", "none")
+            .env("OMPI_MCA_mpi_yield_when_idle", "1")
+            .env("OPENBLAS_NUM_THREADS", "1")
+            .status()
+            .unwrap();
+        let verdict = if status.success() { "ok" } else { "FAILED" };
+        println!("test {name}_on_{ranks}_ranks ... {verdict}");
+        held &= status.success();
+    }
+    if held {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
+}
+
+fn work(worker: fn(&SimpleCommunicator)) {
+    let (universe, _) = mpi::initialize_with_threading(mpi::Threading::Funneled).unwrap();
+    let world = universe.world();
+    // A rank that fails must not leave the others waiting.
+    let passed = std::panic::catch_unwind(|| {
+        let _session = Session::new(&env::args().take(1).collect::<Vec<_>>()).unwrap();
+        worker(&world);
+    });
+    if passed.is_err() {
+        world.abort(1);
+    }
+}
