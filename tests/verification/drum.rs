@@ -83,9 +83,9 @@ fn eytelwein(world: &SimpleCommunicator) -> Result<Answer> {
         let touching: Vec<_> = statics
             .contacts()?
             .into_iter()
-            .filter(|point| point.active)
+            .filter(|point| point.state.is_closed())
             .collect();
-        let sticking = touching.iter().filter(|point| !point.slips).count();
+        let sticking = touching.iter().filter(|point| !point.state.slips()).count();
         let delta = THICKNESS / (2.0 * RADIUS + THICKNESS);
         let exponent = (0..50).fold(friction, |k, _| {
             friction * (1.0 - delta) / (1.0 + delta * friction * k)
