@@ -1,6 +1,20 @@
-//! Finds PETSc with pkg-config, hands its version on, and generates the bindings.
+//! Finds PETSc, says what it is, and generates the bindings to it.
+//!
+//! To crates that depend on this one directly go `DEP_PETSC_VERSION` (as 3.22.5), `DEP_PETSC_LIBRARY` (the folder of a
+//! library that the loader does not find by itself) and `DEP_PETSC_MUMPS` (1 if it was built with MUMPS).
 
-use std::{env, error::Error, path::PathBuf};
+use std::{
+    env,
+    error::Error,
+    path::{Path, PathBuf},
+};
+
+#[path = "build/facts.rs"]
+mod facts;
+#[path = "build/find.rs"]
+mod find;
+
+use facts::Facts;
 
 /// PETSc functions the bindings hold, as regular expressions. A short list keeps the build at a
 /// few seconds: all of PETSc's headers take half a minute.
@@ -11,9 +25,9 @@ const FUNCTIONS: &[&str] = &[
     "PetscPushErrorHandler|PetscPopErrorHandler|PetscErrorMessage",
     "PetscOptions(SetValue|ClearValue|HasName|FindPair|Used|LeftGet|LeftRestore|GetAll|InsertFile|InsertString)",
     "PetscLog(EventRegister|StageRegister|StagePush|StagePop)",
-    "PetscLog(Push|Pop)CurrentEvent_Internal",
+    "petsc_rs_.*", // what is a macro in C or has changed its name: src/shim.h
     "PetscObject(Reference|Dereference|GetComm|Compose|Query|GetOptionsPrefix|SetName|TypeCompare)",
-    "PetscContainer(Create|Destroy|GetPointer|SetPointer|SetUserDestroy)",
+    "PetscContainer(Create|Destroy|GetPointer|SetPointer|SetUserDestroy|SetCtxDestroy)",
     // Index sets and vectors.
     "IS(CreateGeneral|Destroy|GetIndices|RestoreIndices|GetLocalSize)",
     "Vec(Create|CreateSeq|CreateMPI|Destroy|Duplicate|SetSizes|SetType|SetFromOptions)",
@@ -40,13 +54,13 @@ const FUNCTIONS: &[&str] = &[
     // Nonlinear solvers.
     "SNES(Create|Destroy|SetType|GetType|SetOptionsPrefix|GetOptionsPrefix|SetFromOptions|SetUp|Solve)",
     "SNES(SetFunction|SetJacobian|GetJacobian|GetFunction|GetSolution|GetSolutionUpdate|ComputeFunction)",
-    "SNES(SetFunctionDomainError|GetFunctionDomainError|SetComputeInitialGuess|SetUpdate|MonitorSet)",
+    "SNES(SetFunctionDomainError|SetComputeInitialGuess|SetUpdate|MonitorSet)",
     "SNES(SetConvergenceTest|ConvergedDefault|GetConvergedReason|SetConvergedReason|GetIterationNumber)",
     "SNES(GetLinearSolveIterations|GetNumberFunctionEvals|GetFunctionNorm|SetTolerances|GetTolerances)",
     "SNES(GetKSP|GetLineSearch|VISetVariableBounds|VIGetActiveSetIS)",
     "SNESSet(MaxLinearSolveFailures|MaxNonlinearStepFailures|LagJacobian|LagPreconditioner|ForceIteration)",
-    "SNESLineSearch(SetType|GetType|ShellSetUserFunc|GetVecs|GetNorms|SetNorms|GetLambda|SetLambda)",
-    "SNESLineSearch(GetSNES|SetReason|GetVIFunctions|ComputeNorms|PreCheck|PostCheck)",
+    "SNESLineSearch(SetType|GetType|GetVecs|GetNorms|SetNorms|GetLambda|SetLambda)",
+    "SNESLineSearch(GetSNES|SetReason|ComputeNorms|PreCheck|PostCheck)",
     // Time integration.
     "TS(Create|Destroy|SetType|GetType|SetProblemType|SetOptionsPrefix|SetFromOptions|SetUp|Solve)",
     "TSSet(FunctionDomainError|I2Function|I2Jacobian|IFunction|IJacobian|Solution|PreStep|PreStage|PostStage|PostStep)",
@@ -60,9 +74,9 @@ const FUNCTIONS: &[&str] = &[
 
 /// PETSc's globals and constants the bindings hold.
 const VARIABLES: &[&str] = &[
-    "PETSC_(ERR_USER|ERR_MIN_VALUE|ERR_MAX_VALUE|DECIDE|DETERMINE|DEFAULT|CURRENT)",
+    "petsc_rs_err_user|PETSC_(DECIDE|DETERMINE)",
     "PETSC_VERSION_(MAJOR|MINOR|SUBMINOR)",
-    "PetscLogPLB|PetscLogPLE|petsc_stageLog|PetscTrFree",
+    "PetscTrFree",
     "MAT(AIJ|SOLVERMUMPS|SOLVERPETSC)|VECSTANDARD|PC(SHELL|LU)|KSPPREONLY|SNESLINESEARCHSHELL",
     "TS(ALPHA2|BEULER)|TSADAPT(NONE|BASIC)|SNES(NEWTONLS|VINEWTONRSLS|VINEWTONSSLS)",
 ];
@@ -75,21 +89,47 @@ const TYPES: &[&str] = &[
     "TSExactFinalTimeOption",
 ];
 
-fn main() -> Result<(), Box<dyn Error>> {
-    println!("cargo:rerun-if-changed=build.rs");
-    println!("cargo:rerun-if-changed=src/petsc.h");
+fn main() {
+    println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-changed=build");
+    println!("cargo::rerun-if-changed=src");
+    if let Err(error) = build() {
+        // One sentence instead of the text of a panic.
+        println!("cargo::error=petsc-sys: {error}");
+        std::process::exit(1);
+    }
+}
 
-    let petsc = pkg_config::Config::new()
-        .range_version("3.18".."3.19") // enumerations and VI details below are those of 3.18
-        .probe("petsc")?;
-    println!("cargo:version={}", petsc.version);
+fn build() -> Result<(), Box<dyn Error>> {
+    let place = find::petsc()?;
+    let mpi = build_probe_mpi::probe().map_err(|_| {
+        "no MPI was found: mpicc (or the compiler that the variable MPICC names) must be on the PATH"
+    })?;
+    let include: Vec<&Path> = (place.include.iter().chain(&mpi.include_paths))
+        .map(PathBuf::as_path)
+        .collect();
+    let facts = Facts::read(&place.include)?;
+    facts.require_supported()?;
+    for line in facts.cargo_lines(&place.rpath) {
+        println!("{line}");
+    }
 
-    let mpi = build_probe_mpi::probe().map_err(|errors| format!("no MPI found: {errors:?}"))?;
-    let include = petsc.include_paths.iter().chain(&mpi.include_paths);
+    let mut shim = cc::Build::new();
+    shim.file("src/shim.c").includes(&include);
+    shim.try_compile("petsc_rs_shim").map_err(|error| {
+        format!(
+            "the C compiler does not accept PETSc's headers in {}; is it built with the MPI whose mpicc \
+             is on the PATH? ({error})",
+            place.include.first().map_or(Path::new("?"), PathBuf::as_path).display()
+        )
+    })?;
+    for line in &place.link {
+        println!("{line}"); // after the shim, which needs the library
+    }
 
     let mut builder = bindgen::builder()
-        .header("src/petsc.h")
-        .clang_args(include.map(|path| format!("-I{}", path.display())))
+        .header("src/shim.h")
+        .clang_args(include.iter().map(|path| format!("-I{}", path.display())))
         .blocklist_item("MPI_.*|ompi_.*|PMPI_.*")
         .blocklist_item("_IO_.*|FILE|va_list|__va_list_tag|__builtin_va_list")
         .default_enum_style(bindgen::EnumVariation::NewType {

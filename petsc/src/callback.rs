@@ -85,10 +85,11 @@ unsafe fn attach<T: Default + 'static>(
         check(sys::PetscContainerCreate(comm_of(object)?, &mut container))?;
         let pointer = Rc::into_raw(Rc::clone(&table)).cast_mut().cast();
         check(sys::PetscContainerSetPointer(container, pointer))?;
-        check(sys::PetscContainerSetUserDestroy(
-            container,
-            Some(release::<T>),
-        ))?;
+        let release: unsafe extern "C" fn(_) -> _ = release::<T>;
+        #[cfg(petsc_ge_3_23)]
+        check(sys::PetscContainerSetCtxDestroy(container, Some(release)))?;
+        #[cfg(not(petsc_ge_3_23))]
+        check(sys::PetscContainerSetUserDestroy(container, Some(release)))?;
         check(sys::PetscObjectCompose(
             object,
             name.as_ptr(),
@@ -99,7 +100,18 @@ unsafe fn attach<T: Default + 'static>(
     Ok(table)
 }
 
-unsafe extern "C" fn release<T>(pointer: *mut c_void) -> c_int {
+/// What PETSc hands to [`release`]: the pointer stored, and since 3.23 the place where it is stored.
+#[cfg(petsc_ge_3_23)]
+type Stored = *mut *mut c_void;
+#[cfg(not(petsc_ge_3_23))]
+type Stored = *mut c_void;
+
+unsafe extern "C" fn release<T>(stored: Stored) -> c_int {
+    #[cfg(petsc_ge_3_23)]
+    // SAFETY: the place where PETSc keeps the pointer that `attach` has stored.
+    let pointer = unsafe { *stored };
+    #[cfg(not(petsc_ge_3_23))]
+    let pointer = stored;
     // SAFETY: the pointer stored by `attach`, released once.
     let dropped = catch_unwind(|| drop(unsafe { Rc::from_raw(pointer.cast::<T>().cast_const()) }));
     match dropped {

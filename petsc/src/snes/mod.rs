@@ -266,12 +266,9 @@ impl SnesRef {
         self.ksp()?.converged_reason()
     }
 
-    /// Declares the current residual evaluation a failure of the domain. Inside a residual closure,
-    /// return [`Failure::Domain`](crate::Failure::Domain) instead. Collective.
-    ///
-    /// # Errors
-    /// If PETSc fails.
-    pub fn set_function_domain_error(&mut self) -> Result<()> {
+    /// Declares the residual evaluation at work a failure of the domain, on all ranks.
+    pub(crate) fn set_function_domain_error(&mut self) -> Result<()> {
+        self.table()?.outside_domain.set(true);
         // SAFETY: a live solver.
         check(unsafe { sys::SNESSetFunctionDomainError(self.raw()) })
     }
