@@ -25,8 +25,6 @@ fn main() {
             println!("cargo::rustc-cfg=petsc_ge_3_{step}");
         }
     }
-    println!("cargo::rustc-check-cfg=cfg(petsc_has_mumps)");
-    if known("MUMPS").is_ok_and(|value| value == "1") {
-        println!("cargo::rustc-cfg=petsc_has_mumps");
-    }
+    let version = known("VERSION").unwrap_or_default();
+    println!("cargo::rustc-env=PETSC_RS_VERSION={version}");
 }

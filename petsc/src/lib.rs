@@ -51,7 +51,7 @@ pub use ksp::{Ksp, KspRef};
 pub use matrix::{Matrix, MatrixOption, MatrixRef};
 pub use reason::{KspReason, SnesReason, TsReason};
 pub use scatter::Scatter;
-pub use session::{Session, memory_bytes};
+pub use session::{BUILT_WITH, Session, has_external_package, memory_bytes};
 pub use snes::{ConvergenceCheck, LineSearchInfo, Snes, SnesRef, Tolerances};
 pub use ts::{Alpha2State, AlphaParameters, ExactFinalTime, Ts, TsRef};
 pub use vector::{Vector, VectorRef};
