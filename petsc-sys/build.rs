@@ -27,7 +27,7 @@ const FUNCTIONS: &[&str] = &[
     "PetscLog(EventRegister|StageRegister|StagePush|StagePop)",
     "petsc_rs_.*", // what is a macro in C or has changed its name: src/shim.h
     "PetscObject(Reference|Dereference|GetComm|Compose|Query|GetOptionsPrefix|SetName|TypeCompare)",
-    "PetscContainer(Create|Destroy|GetPointer|SetPointer|SetUserDestroy|SetCtxDestroy)",
+    "PetscContainer(Create|Destroy|SetPointer)",
     // Index sets and vectors.
     "IS(CreateGeneral|Destroy|GetIndices|RestoreIndices|GetLocalSize)",
     "Vec(Create|CreateSeq|CreateMPI|Destroy|Duplicate|SetSizes|SetType|SetFromOptions)",
@@ -39,7 +39,7 @@ const FUNCTIONS: &[&str] = &[
     "Mat(Create|Destroy|Duplicate|SetSizes|SetType|SetOption|SetOptionsPrefix|SetFromOptions|SetUp)",
     "Mat(SetPreallocationCOO|SetValuesCOO|AssemblyBegin|AssemblyEnd|ZeroEntries|ZeroRowsColumns)",
     "Mat(GetLocalSize|GetSize|GetOwnershipRange|GetRow|RestoreRow|GetInfo|Norm|Mult|MultTranspose)",
-    "Mat(Copy|Scale|Shift|AXPY|GetDiagonal|CreateVecs|GetFactor|LUFactorSymbolic|LUFactorNumeric|Solve)",
+    "Mat(Copy|Scale|Shift|AXPY|GetFactor|GetOrdering|LUFactorSymbolic|LUFactorNumeric|Solve)",
     "Mat(FactorInfoInitialize|FactorGetSolverType|FactorGetError|FactorClearError)",
     "MatCreateShell|MatShellSetOperation",
     "Mat(FactorSetSchurIS|FactorCreateSchurComplement|SetOptionsPrefixFactor)",
@@ -77,7 +77,7 @@ const VARIABLES: &[&str] = &[
     "petsc_rs_err_user|PETSC_(DECIDE|DETERMINE)",
     "PETSC_VERSION_(MAJOR|MINOR|SUBMINOR)",
     "PetscTrFree",
-    "MAT(AIJ|SOLVERMUMPS|SOLVERPETSC)|VECSTANDARD|PC(SHELL|LU)|KSPPREONLY|SNESLINESEARCHSHELL",
+    "MAT(AIJ|SOLVERMUMPS|SOLVERPETSC|ORDERINGND)|VECSTANDARD|PC(SHELL|LU)|KSPPREONLY|SNESLINESEARCHSHELL",
     "TS(ALPHA2|BEULER)|TSADAPT(NONE|BASIC)|SNES(NEWTONLS|VINEWTONRSLS|VINEWTONSSLS)",
 ];
 

@@ -1,5 +1,20 @@
 #include "shim.h"
 
+PetscErrorCode petsc_rs_container_get(PetscContainer container, void **content)
+{
+  return PetscContainerGetPointer(container, content);
+}
+
+/* Before 3.23 `destroy` gets the content, since then the place where it is stored. */
+PetscErrorCode petsc_rs_container_set_destroy(PetscContainer container, petsc_rs_destroy destroy)
+{
+#if PETSC_VERSION_GE(3, 23, 0)
+  return PetscContainerSetCtxDestroy(container, (PetscCtxDestroyFn *)destroy);
+#else
+  return PetscContainerSetUserDestroy(container, destroy);
+#endif
+}
+
 /* A macro in every version; since 3.20 it goes through log handlers instead of global function pointers. */
 PetscErrorCode petsc_rs_event_begin(PetscLogEvent event)
 {

@@ -12,6 +12,10 @@ typedef PetscErrorCode (*petsc_rs_search)(SNESLineSearch, void *);
 typedef PetscErrorCode (*petsc_rs_project)(SNES, Vec);
 typedef PetscErrorCode (*petsc_rs_norm)(SNES, Vec, Vec, PetscReal *);
 
+typedef PetscErrorCode (*petsc_rs_destroy)(void *);
+
+PetscErrorCode petsc_rs_container_get(PetscContainer container, void **content);
+PetscErrorCode petsc_rs_container_set_destroy(PetscContainer container, petsc_rs_destroy destroy);
 PetscErrorCode petsc_rs_event_begin(PetscLogEvent event);
 PetscErrorCode petsc_rs_event_end(PetscLogEvent event);
 PetscErrorCode petsc_rs_line_search_set_apply(SNESLineSearch search, petsc_rs_search apply, void *context);

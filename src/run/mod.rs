@@ -40,7 +40,7 @@ pub use stop_watch::StopCause;
 use crate::case::{self, Case, CaseError};
 use crate::output::{OutputError, number};
 use crate::system::{Problem, System, SystemError};
-use setup::{blas, defaults, unread};
+use setup::{blas, defaults, linear, unread};
 use simulation::Simulation;
 use spent::Spent;
 use stop_watch::StopWatch;
@@ -146,6 +146,7 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     }
     let mut recorder = Recorder::new(case, &system, resumed.as_ref())?;
     recorder.show(&blas::report(comm));
+    recorder.show(&linear::report(comm)?);
     let simulation = Rc::new(Simulation::new(
         case, system, recorder, landmarks, stop_watch, spent,
     )?);

@@ -2,6 +2,8 @@
 
 use std::rc::Rc;
 
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
 use petsc::{Failure, Matrix, SnesRef, options};
 
 use crate::system::{CondensedSolve, System};
@@ -32,12 +34,55 @@ const PACKAGE_DEFAULTS: &[(&str, &str)] = &[
     ("condensed_mat_mumps_icntl_6", "0"),
 ];
 
+/// The same for a PETSc without MUMPS, whose own factorisation works on one rank.
+const WITHOUT_MUMPS: &[(&str, &str)] = &[
+    ("pc_factor_mat_solver_type", "petsc"),
+    (PACKAGE, "petsc"),
+    // A long thin sheet is a narrow band.
+    ("condensed_pc_factor_mat_ordering_type", "rcm"),
+];
+/// On several ranks each factorises the whole system.
+const WITHOUT_MUMPS_ON_RANKS: &[(&str, &str)] = &[
+    ("condensed_pc_type", "redundant"),
+    ("condensed_redundant_pc_type", "lu"),
+    ("condensed_redundant_pc_factor_mat_ordering_type", "rcm"),
+];
+
+/// A line about the factorisation of a PETSc without MUMPS; none otherwise.
+pub(in crate::run) fn report(comm: &SimpleCommunicator) -> petsc::Result<String> {
+    if petsc::has_external_package("mumps")? {
+        return Ok(String::new());
+    }
+    let ranks = match comm.size() {
+        1 => "",
+        _ => ", on each rank for the whole sheet, so more ranks gain little",
+    };
+    Ok(format!(
+        "warning: this PETSc was built without MUMPS: its own factorisation is used{ranks}\n"
+    ))
+}
+
+/// Puts the choice for a PETSc without MUMPS into the option database, where the user has not chosen.
+fn do_without_mumps(comm: &SimpleCommunicator) -> petsc::Result<()> {
+    let on_ranks = if comm.size() == 1 {
+        &[]
+    } else {
+        WITHOUT_MUMPS_ON_RANKS
+    };
+    for (name, value) in WITHOUT_MUMPS.iter().chain(on_ranks) {
+        options::set_default(name, value)?;
+    }
+    Ok(())
+}
+
 /// Whether the option has the value that this program gave it for the linear solves.
 pub(super) fn is_default(name: &str, value: Option<&str>) -> bool {
     PETSC_DEFAULTS
         .iter()
         .chain(&[(PACKAGE, DEFAULT_PACKAGE)])
         .chain(PACKAGE_DEFAULTS)
+        .chain(WITHOUT_MUMPS)
+        .chain(WITHOUT_MUMPS_ON_RANKS)
         .any(|(ours, default)| *ours == name && value == Some(*default))
 }
 
@@ -60,6 +105,9 @@ pub(in crate::run) struct LinearSolve {
 impl LinearSolve {
     /// Decides by the options, and gives PETSc's own solve its defaults. Collective.
     pub fn chosen(system: &Rc<System>) -> petsc::Result<Self> {
+        if !petsc::has_external_package("mumps")? {
+            do_without_mumps(system.comm())?;
+        }
         let other_solver = options::get("snes_type")?.is_some_and(|given| given != SOLVER);
         if options::is_given(LEFT_TO_PETSC)? || other_solver {
             for (name, value) in PETSC_DEFAULTS {

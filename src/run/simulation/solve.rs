@@ -2,7 +2,7 @@
 //! given up.
 
 use petsc::{
-    CallbackError, ConvergenceCheck, LineSearchInfo, SnesReason, SnesRef, TsRef, VectorRef,
+    CallbackError, ConvergenceCheck, LineSearchInfo, SnesReason, SnesRef, Ts, TsRef, VectorRef,
 };
 
 use super::Simulation;
@@ -133,7 +133,8 @@ impl Simulation {
         self.counts.set(counts);
         // PETSc would go on shortening the step, or repeating the first one: stop it where it must not.
         let next = ts.time_step()? * defaults::CUT_BACK;
-        if reason.is_diverged() && (counts.steps == 0 || next < self.least_step) {
+        let repeats = counts.steps == 0 && Ts::START_FORGETS_CUT_BACK;
+        if reason.is_diverged() && (repeats || next < self.least_step) {
             ts.set_max_step_rejections(0)?;
         }
         Ok(())
