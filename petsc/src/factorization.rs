@@ -225,23 +225,6 @@ impl Factorization {
         // SAFETY: live objects; PETSc checks the layouts.
         check(unsafe { sys::MatSolve(self.raw, b.raw(), x.raw()) })
     }
-
-    /// MUMPS's global information `INFOG(i)`, i from 1: for example 9 for the size of the factors.
-    ///
-    /// # Errors
-    /// If PETSc fails.
-    pub fn mumps_infog(&self, i: i32) -> Result<i32> {
-        if !self.mumps {
-            return Err(without_mumps());
-        }
-        if !(1..=80).contains(&i) {
-            return Err(Error::usage("INFOG has the indices 1 to 80"));
-        }
-        let mut value = 0;
-        // SAFETY: a live MUMPS factor, an index in range, one integer to write.
-        check(unsafe { sys::MatMumpsGetInfog(self.raw, i, &mut value) })?;
-        Ok(value)
-    }
 }
 
 fn without_mumps() -> Error {

@@ -158,18 +158,6 @@ fn require_built_version() -> Result<()> {
     )))
 }
 
-/// The memory this process holds at the moment, in bytes.
-///
-/// # Errors
-/// If PETSc is not running or cannot find out.
-pub fn memory_bytes() -> Result<f64> {
-    let _keep = keep()?;
-    let mut bytes = 0.0;
-    // SAFETY: PETSc writes one number.
-    check(unsafe { sys::PetscMemoryGetCurrentUsage(&mut bytes) })?;
-    Ok(bytes)
-}
-
 /// A C string, or an error if the text holds a NUL byte.
 pub(crate) fn c_string(text: &str) -> Result<CString> {
     CString::new(text).map_err(|_| Error::usage(format!("a NUL byte in {text:?}")))

@@ -85,7 +85,7 @@ impl Ts {
     ///
     /// # Errors
     /// If PETSc or a closure fails; an integration that gives up is a [`TsReason`] (unless
-    /// [`TsRef::set_error_if_step_fails`] or its option says otherwise).
+    /// `-ts_error_if_step_fails` says otherwise).
     pub fn solve(&mut self) -> Result<TsReason> {
         self.require_no_interpolation()?;
         self.require_fitting_method()?;
