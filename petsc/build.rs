@@ -19,7 +19,7 @@ fn main() {
         .ok()
         .and_then(|version| version.split('.').nth(1)?.parse().ok())
         .unwrap_or(0);
-    for step in [21, 22, 23] {
+    for step in [21, 22, 23, 25] {
         println!("cargo::rustc-check-cfg=cfg(petsc_ge_3_{step})");
         if minor >= step {
             println!("cargo::rustc-cfg=petsc_ge_3_{step}");

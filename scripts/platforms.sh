@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds, tests and runs the benchmark on several platforms, each in a bare root of its own, and prints one table.
-#   scripts/platforms.sh [bookworm] [trixie] [newest]        all of them unless named
+#   scripts/platforms.sh [here] [bookworm] [trixie] [newest]     the last three unless named
+#   here               this machine as it is
 #   bookworm, trixie   Debian 12 and 13 with their packages
 #   newest             the newest PETSc 3.26 from its source package (PyPI), without MUMPS, in the root of trixie
 # Needs root, debootstrap, a Rust toolchain and pip. From the environment:
@@ -24,6 +25,10 @@ mkdir -p "$results"
 inside() {
     local root=$roots/$1
     shift
+    if [ "$root" = "$roots/here" ]; then
+        env PROJECT="$project" "$@" bash -euo pipefail -s
+        return
+    fi
     mkdir -p "$root/source" "$root/root/.cargo" "$root/root/.rustup"
     unshare --mount bash -c '
         set -e
@@ -36,7 +41,7 @@ inside() {
         exec chroot "$root" env -i HOME=/root LC_ALL=C.UTF-8 \
             PATH=/root/.cargo/bin:/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
             RUSTUP_TOOLCHAIN="${RUSTUP_TOOLCHAIN:-stable}" SSL_CERT_FILE=/etc/ssl/certs/ca-certificates.crt \
-            CARGO_HTTP_CAINFO=/etc/ssl/certs/ca-certificates.crt "$@" bash -euo pipefail -s
+            CARGO_HTTP_CAINFO=/etc/ssl/certs/ca-certificates.crt PROJECT=/source "$@" bash -euo pipefail -s
     ' inside "$root" "$project" "$@"
 }
 
@@ -48,7 +53,7 @@ debian() {
     # The network of this machine: resolver, certificates and settings of apt.
     cp /etc/resolv.conf "$roots/$release/etc/resolv.conf"
     cp /etc/ssl/certs/ca-certificates.crt "$roots/$release/etc/ssl/certs/ca-certificates.crt"
-    inside "$release" <<<'cd /source && bash scripts/install.sh'
+    inside "$release" <<<'cd "$PROJECT" && bash scripts/install.sh'
 }
 
 # The newest PETSc, built without MUMPS and without Fortran, into /opt/petsc of trixie's root, once.
@@ -80,8 +85,9 @@ measure() {
     rm -rf "${results:?}/$name"
     mkdir -p "$results/$name"
     echo "platforms: $name"
-    inside "$root" CARGO_TARGET_DIR="/build-$name" NAME="$name" "$@" <<'END'
-cd /source
+    [ "$name" = here ] || set -- CARGO_TARGET_DIR="/build-$name" "$@"
+    inside "$root" NAME="$name" "$@" <<'END'
+cd "$PROJECT"
 results=results-platforms/$NAME
 source scripts/environment.sh
 {
@@ -96,7 +102,7 @@ for ranks in 1 2; do
     export CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER="mpirun -q -n $ranks"
     cargo test --release --locked -p petsc --tests --no-fail-fast >"$results/tests-$ranks.log" 2>&1 ||
         echo "platforms: tests on $ranks ranks failed, see $results/tests-$ranks.log"
-    mpirun -q -n "$ranks" "$CARGO_TARGET_DIR/release/ssnp155" -options_file inputs/ssnp155.opts \
+    mpirun -q -n "$ranks" "${CARGO_TARGET_DIR:-target}/release/ssnp155" -options_file inputs/ssnp155.opts \
         -output_dir "$results/ranks-$ranks" >"$results/run-$ranks.log" 2>&1 ||
         echo "platforms: the benchmark on $ranks ranks ended with code $?"
 done
@@ -105,6 +111,7 @@ END
 
 for name in "$@"; do
     case $name in
+    here) measure here here ;;
     bookworm | trixie)
         debian "$name"
         measure "$name" "$name"
@@ -115,7 +122,7 @@ for name in "$@"; do
         measure newest trixie PETSC_DIR=/opt/petsc
         ;;
     *)
-        echo "platforms: no platform is called $name; there are bookworm, trixie and newest" >&2
+        echo "platforms: no platform is called $name; there are here, bookworm, trixie and newest" >&2
         exit 2
         ;;
     esac

@@ -57,6 +57,13 @@ impl Ts {
     /// Whether TSALPHA2 repeats a refused first step at the same length for ever.
     pub const START_FORGETS_CUT_BACK: bool = cfg!(not(petsc_ge_3_21));
 
+    /// The option that limits how often a step is refused; PETSc warns of its old name since 3.25.
+    pub const REJECTIONS_OPTION: &str = if cfg!(petsc_ge_3_25) {
+        "ts_max_step_rejections"
+    } else {
+        "ts_max_reject"
+    };
+
     /// Whether TSALPHA2's own start makes its first acceleration twice too large.
     pub const OWN_START_IS_OF_FIRST_ORDER: bool = cfg!(not(petsc_ge_3_22));
 

@@ -34,9 +34,8 @@ const PACKAGE_DEFAULTS: &[(&str, &str)] = &[
     ("condensed_mat_mumps_icntl_6", "0"),
 ];
 
-/// The same for a PETSc without MUMPS, whose own factorisation works on one rank.
+/// For a PETSc without MUMPS, whose own factorisation works on one rank.
 const WITHOUT_MUMPS: &[(&str, &str)] = &[
-    ("pc_factor_mat_solver_type", "petsc"),
     (PACKAGE, "petsc"),
     // A long thin sheet is a narrow band.
     ("condensed_pc_factor_mat_ordering_type", "rcm"),
@@ -105,15 +104,18 @@ pub(in crate::run) struct LinearSolve {
 impl LinearSolve {
     /// Decides by the options, and gives PETSc's own solve its defaults. Collective.
     pub fn chosen(system: &Rc<System>) -> petsc::Result<Self> {
-        if !petsc::has_external_package("mumps")? {
-            do_without_mumps(system.comm())?;
-        }
+        let mumps = petsc::has_external_package("mumps")?;
         let other_solver = options::get("snes_type")?.is_some_and(|given| given != SOLVER);
         if options::is_given(LEFT_TO_PETSC)? || other_solver {
             for (name, value) in PETSC_DEFAULTS {
-                options::set_default(name, value)?;
+                if mumps || !(name.contains("mumps") || *value == "mumps") {
+                    options::set_default(name, value)?;
+                }
             }
             return Ok(Self { condensed: None });
+        }
+        if !mumps {
+            do_without_mumps(system.comm())?;
         }
         options::set_default(PACKAGE, DEFAULT_PACKAGE)?;
         if options::get(PACKAGE)?.as_deref() == Some(DEFAULT_PACKAGE) {
