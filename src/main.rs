@@ -1,4 +1,4 @@
-//! The program: opens MPI and PETSc, reads the case, runs it, and ends with a code that tells how.
+//! The program: opens MPI and PETSc, reads the case, runs it, and ends with a code that says how.
 
 use std::fmt::Display;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -8,8 +8,8 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 use petsc::{Session, options};
 use ssnp155::case::{
-    Case, ENVIRONMENT, OptionSource, arguments_as_text, check_arguments, check_environment,
-    check_ranks, help_text,
+    Case, CaseError, ENVIRONMENT, OptionSource, arguments_as_text, check_arguments,
+    check_environment, check_ranks, help_text,
 };
 use ssnp155::ranks::lowest_failing;
 use ssnp155::run::{Ending, conclude, simulate};
@@ -37,7 +37,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// There was no run; the reason has been told.
+/// There was no run; the reason has been shown.
 struct Refused;
 
 /// How the run ended. Collective.
@@ -54,7 +54,7 @@ fn program(world: &SimpleCommunicator) -> Result<Ending, Refused> {
     let outcome = agree(world, simulate(&case, world))?;
     match outcome {
         Some(outcome) => agree(world, conclude(&case, outcome, &session, world)),
-        // Help was asked for, and given.
+        // Help was asked for and shown.
         None => Ok(Ending::Holds),
     }
 }
@@ -85,14 +85,11 @@ fn agree<T, E: Display>(world: &SimpleCommunicator, mine: Result<T, E>) -> Resul
 struct PetscOptions;
 
 impl OptionSource for PetscOptions {
-    fn get(&self, name: &str) -> Option<String> {
-        // PETSc stores an option without a value, and one with an empty value, alike.
-        match options::get(name) {
-            Ok(Some(value)) => Some(value),
-            _ => options::has(name)
-                .ok()
-                .filter(|&given| given)
-                .map(|_| String::new()),
-        }
+    fn get(&self, name: &str) -> Result<Option<String>, CaseError> {
+        // PETSc stores an option without a value, and one with an empty value, alike: as an empty text.
+        options::get(name).map_err(|error| CaseError::Unreadable {
+            option: name.to_owned(),
+            reason: error.to_string(),
+        })
     }
 }

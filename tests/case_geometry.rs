@@ -45,9 +45,9 @@ fn tools_and_sheets_that_cannot_work_are_refused_with_numbers() {
         text.contains("half of -sheet_length is 30 mm and the die's flat begins at 29 mm"),
         "{text}"
     );
-    assert!(text.contains("give a -sheet_length above 60 mm"), "{text}");
+    assert!(text.contains("use a -sheet_length above 60 mm"), "{text}");
     let text = refusal(&[("sheet_length", "80")]);
-    assert!(text.contains("the way round the punch to the shoulder is 39.290 mm and half of -sheet_length is 40 mm"), "{text}");
+    assert!(text.contains("the path round the punch to the shoulder is 39.290 mm and half of -sheet_length is 40 mm"), "{text}");
     assert!(text.contains("above 80.581 mm"), "{text}");
     assert!(read(&[("sheet_length", "80.6")]).is_ok());
     assert!(read(&[("sheet_length", "80"), ("stroke", "15")]).is_ok());

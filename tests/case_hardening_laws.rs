@@ -408,17 +408,17 @@ fn what_belongs_to_another_law_is_refused_in_one_sentence() {
 fn a_word_or_a_constant_that_cannot_be_is_refused_with_what_can() {
     let text = refusal(&[("hardening", "holomon")]);
     assert!(
-        text.starts_with("option -hardening holomon: this is none of the choices; give one of the words: table or hollomon"),
+        text.starts_with("option -hardening holomon: this is none of the choices; specify one of the words: table or hollomon"),
         "{text}"
     );
     let text = refusal(&[("hardening", "swift"), ("swift_n", "1.5")]);
     assert_eq!(
         text,
-        "option -swift_n 1.5: the value is out of range; give a real number: 1e-3 <= value <= 1 (default 0.223)"
+        "option -swift_n 1.5: the value is out of range; specify a real number: 1e-3 <= value <= 1 (default 0.223)"
     );
     let text = refusal(&[("hardening", "swift"), ("swift_k", "")]);
     assert!(
-        text.starts_with("option -swift_k has no value: give a real number in MPa:"),
+        text.starts_with("option -swift_k has no value: specify a real number in MPa:"),
         "{text}"
     );
     let text = refusal(&[("hardening", "hollomon"), ("hollomon_n", "0.01")]);

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use proptest::prelude::{any, proptest};
-use ssnp155::case::{Case, CaseError, Difference, Dynamics};
+use ssnp155::case::{Case, CaseError, Difference, Dynamics, OptionSource};
 
 fn options(given: &[(&str, &str)]) -> BTreeMap<String, String> {
     given
@@ -18,6 +18,34 @@ fn read(given: &[(&str, &str)]) -> Result<Case, CaseError> {
 
 fn refusal(given: &[(&str, &str)]) -> String {
     read(given).unwrap_err().to_string()
+}
+
+/// A source that knows one option only and fails on it.
+struct Broken(&'static str);
+
+impl OptionSource for Broken {
+    fn get(&self, name: &str) -> Result<Option<String>, CaseError> {
+        if name != self.0 {
+            return Ok(None);
+        }
+        Err(CaseError::Unreadable {
+            option: name.to_owned(),
+            reason: "PETSc error 63".to_owned(),
+        })
+    }
+}
+
+#[test]
+fn a_source_that_fails_is_no_reason_for_the_default() {
+    let reference = Case::reference().unwrap();
+    for (name, _) in reference.options() {
+        let error = Case::read(&Broken(name)).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            format!("option -{name} cannot be read: PETSc error 63")
+        );
+    }
+    assert_eq!(Case::read(&Broken("nobody's")).unwrap(), reference);
 }
 
 #[test]
@@ -191,7 +219,7 @@ fn the_benchmarks_table_from_a_file_is_still_the_reference() {
 fn numbers_are_finite_and_in_range() {
     assert_eq!(
         refusal(&[("stroke", "abc")]),
-        "option -stroke abc: this is not a number; give a real number in mm: 0 < value <= 100000 (default 28.5 mm)"
+        "option -stroke abc: this is not a number; specify a real number in mm: 0 < value <= 100000 (default 28.5 mm)"
     );
     assert!(refusal(&[("density", "1d-3")]).contains("the exponent is written with e, as in 1e-3"));
     assert!(refusal(&[("density", "1,5")]).contains("the decimal sign is a point"));
@@ -239,9 +267,11 @@ fn whole_numbers_words_and_flags_are_what_they_are() {
     }
     assert!(
         refusal(&[("dynamics", "fast")])
-            .contains("none of the choices; give one of the words: slow or none")
+            .contains("none of the choices; specify one of the words: slow or none")
     );
-    assert!(refusal(&[("quadrature", "4")]).contains("give one of the words: 2 or 3 (default 2)"));
+    assert!(
+        refusal(&[("quadrature", "4")]).contains("specify one of the words: 2 or 3 (default 2)")
+    );
     assert!(refusal(&[("extrapolate", "maybe")]).contains("neither true nor false"));
     for (text, on) in [
         ("", true),
@@ -272,7 +302,7 @@ fn an_option_without_its_value_is_refused() {
     }
     assert_eq!(
         refusal(&[("hardening_file", "")]),
-        "option -hardening_file has no value: give a path (default benchmark)"
+        "option -hardening_file has no value: specify a path (default benchmark)"
     );
 }
 

@@ -9,8 +9,16 @@ use crate::text::show_real;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CaseError {
+    /// Whoever knows the options cannot be asked.
+    #[error("option -{option} cannot be read: {reason}")]
+    Unreadable {
+        /// Name without the dash.
+        option: String,
+        /// What the source says.
+        reason: String,
+    },
     /// An option that needs a value was given without one.
-    #[error("option -{option} has no value: give {wanted} (default {default})")]
+    #[error("option -{option} has no value: specify {wanted} (default {default})")]
     NoValue {
         /// Name without the dash.
         option: &'static str,
@@ -20,7 +28,7 @@ pub enum CaseError {
         default: String,
     },
     /// The text of an option is not of its kind, or outside its range.
-    #[error("option -{option} {given}: {problem}; give {wanted} (default {default})")]
+    #[error("option -{option} {given}: {problem}; specify {wanted} (default {default})")]
     BadValue {
         /// Name without the dash.
         option: &'static str,
@@ -59,7 +67,7 @@ pub enum CaseError {
     },
     /// A word of the command line that is not UTF-8 text.
     #[error(
-        "argument '{argument}' is not UTF-8 text: write it in UTF-8, and give files and folders names in UTF-8"
+        "argument '{argument}' is not UTF-8 text: write it in UTF-8, and name files and folders in UTF-8"
     )]
     ArgumentNotText {
         /// The word, as far as it can be read.
@@ -76,12 +84,12 @@ pub enum CaseError {
     },
     /// `-options_file` without a path.
     #[error(
-        "option -options_file has no value: give the path of an option file, for example inputs/ssnp155.opts"
+        "option -options_file has no value: specify the path of an option file, for example inputs/ssnp155.opts"
     )]
     OptionsFileWithoutPath,
     /// `-options_file` with a path that cannot be read.
     #[error(
-        "option -options_file {path}: the file cannot be read ({reason}); give the path of a text file with an option on \
+        "option -options_file {path}: the file cannot be read ({reason}); specify the path of a text file with an option on \
          each line, for example inputs/ssnp155.opts"
     )]
     OptionsFileUnreadable {
@@ -127,7 +135,7 @@ pub enum CaseError {
     /// The punch passes between two contact points. Lengths in mm.
     #[error(
         "the mesh cannot feel the punch: -punch_radius {} mm is smaller than the distance between contact points, \
-         {spacing:.3} mm; give a greater radius, or more elements with -sheet_nx",
+         {spacing:.3} mm; use a larger radius, or more elements with -sheet_nx",
         show_real(*punch_radius)
     )]
     PunchUnseen {
@@ -154,7 +162,7 @@ pub enum CaseError {
     /// The punch would squeeze the sheet on the bottom of the cavity. Lengths in mm.
     #[error(
         "-stroke {stroke} mm squeezes the sheet on the bottom of the die, which is {depth} mm below the die's flat \
-         (-die_radius + -die_shoulder_radius); give a stroke below {depth} mm or a deeper die"
+         (-die_radius + -die_shoulder_radius); use a stroke below {depth} mm or a deeper die"
     )]
     StrokeTooDeep {
         /// Stroke of the punch.
@@ -165,7 +173,7 @@ pub enum CaseError {
     /// The sheet does not reach the flat of the die. Lengths in mm.
     #[error(
         "the sheet does not rest on the die: half of -sheet_length is {half_length} mm and the die's flat begins at \
-         {die_edge} mm (-die_radius + -die_shoulder_radius); give a -sheet_length above {least_length} mm, which leaves \
+         {die_edge} mm (-die_radius + -die_shoulder_radius); use a -sheet_length above {least_length} mm, which leaves \
          a thickness to spare at each end"
     )]
     SheetTooShort {
@@ -179,7 +187,7 @@ pub enum CaseError {
     /// The end of the sheet would be drawn over the shoulder. Lengths in mm.
     #[error(
         "the sheet slips off the die's shoulder: at -stroke {stroke} mm the path round the punch to the shoulder is \
-         {path:.3} mm and half of -sheet_length is {half_length} mm; give a -sheet_length above {least_length:.3} mm \
+         {path:.3} mm and half of -sheet_length is {half_length} mm; use a -sheet_length above {least_length:.3} mm \
          or a shorter stroke"
     )]
     SheetSlipsOff {
@@ -208,7 +216,7 @@ pub enum CaseError {
     /// More MPI ranks than elements.
     #[error(
         "too many MPI ranks: {ranks}, and the mesh has -sheet_nx {nx} times -sheet_ny {ny} elements; every rank needs \
-         one: give mpirun -n {elements} or less, or refine the mesh"
+         one: use mpirun -n {elements} or less, or refine the mesh"
     )]
     TooManyRanks {
         /// Ranks of the run.
@@ -247,7 +255,7 @@ pub enum CaseError {
     },
 }
 
-/// Something to tell the person that does not stop the run.
+/// Something the person should know that does not stop the run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Warning {
     /// Name of the option without the dash.

@@ -2,7 +2,6 @@
 
 use super::error::CaseError;
 use super::model::Case;
-use crate::contact::ContactLocation;
 
 /// Checks sheet, tools and stroke together.
 pub(crate) fn check(case: &Case) -> Result<(), CaseError> {
@@ -14,12 +13,7 @@ pub(crate) fn check(case: &Case) -> Result<(), CaseError> {
 
 /// A punch that is finer than the contact points goes through the sheet between them.
 fn check_punch(case: &Case) -> Result<(), CaseError> {
-    let edge = case.sheet.half_length() / case.discretisation.nx as f64;
-    let spacing = match case.discretisation.contact_location {
-        ContactLocation::Points => edge / case.discretisation.contact_points_per_edge as f64,
-        ContactLocation::Nodes => edge / 2.0,
-        ContactLocation::Closest => edge,
-    };
+    let spacing = case.contact_spacing();
     let punch_radius = case.tools.punch_radius;
     if punch_radius >= spacing {
         Ok(())
@@ -85,9 +79,9 @@ fn check_support(case: &Case) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// Shortest way (mm) of the sheet's lower side at full stroke from the plane of symmetry to the shoulder: round the punch,
+/// Shortest path (mm) of the sheet's lower side at full stroke from the plane of symmetry to the shoulder: round the punch,
 /// then along the common tangent of the punch (with the sheet on it) and the shoulder. A sheet that leaves the punch
-/// takes a longer way, so a shorter sheet slips off for certain.
+/// takes a longer path, so a shorter sheet slips off for certain.
 pub(crate) fn inner_path(case: &Case) -> f64 {
     let punch = case.tools.punch_radius + case.sheet.thickness;
     let shoulder = case.tools.die_shoulder_radius;

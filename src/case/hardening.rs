@@ -1,14 +1,12 @@
-//! Which hardening law the sheet follows, and the constants it takes from the options.
+//! The hardening laws as options: the choice of a law, and the constants of all of them.
 //!
 //! The laws and their constants are declared in `src/material/hardening/`; options follow from there.
 
-use super::error::CaseError;
 use super::kind::{Kind, Problem, Real};
-use super::model::{Case, Material, OptionSource};
+use super::model::{Case, Material};
 use super::option::{self, Described, Group};
-use super::table;
 use crate::material::hardening::{Constant, Declaration, Hardening, LAWS, law_named};
-use crate::text::{shortened, show_real};
+use crate::text::show_real;
 
 /// One of the hardening laws by its name.
 pub(crate) struct Law;
@@ -45,7 +43,8 @@ pub(crate) fn constants() -> impl Iterator<Item = &'static Constant> {
         .map(|(_, constant)| constant)
 }
 
-fn has(law: &Declaration, constant: &Constant) -> bool {
+/// Whether a law has this constant.
+pub(crate) fn has(law: &Declaration, constant: &Constant) -> bool {
     law.constants.iter().any(|own| own.name == constant.name)
 }
 
@@ -80,57 +79,10 @@ impl Described for Constant {
 }
 
 impl Constant {
-    fn kind(&self) -> Real {
+    /// What values it can have.
+    pub(crate) fn kind(&self) -> Real {
         Real(self.range.0, self.range.1)
     }
-}
-
-/// Law, values of its constants, path of the table, and the law itself.
-pub(crate) type Read = (&'static Declaration, Vec<f64>, String, Hardening);
-
-/// Reads what the law in use needs, and refuses what belongs to another law.
-pub(crate) fn read(options: &dyn OptionSource, young_modulus: f64) -> Result<Read, CaseError> {
-    let law = table::HARDENING.read(options)?;
-    let file = table::HARDENING_FILE.read(options)?;
-    let benchmark = file == table::BENCHMARK_TABLE;
-    if law.build.is_some() && !benchmark {
-        return Err(CaseError::OtherLaw {
-            option: table::HARDENING_FILE.name,
-            given: shortened(&file),
-            owner: LAWS
-                .iter()
-                .filter(|law| law.build.is_none())
-                .map(|law| law.name)
-                .collect(),
-            law: law.name,
-        });
-    }
-    for constant in constants().filter(|constant| !has(law, constant)) {
-        if let Some(given) = options.get(constant.name) {
-            let owners: Vec<&str> = LAWS
-                .iter()
-                .filter(|law| has(law, constant))
-                .map(|law| law.name)
-                .collect();
-            return Err(CaseError::OtherLaw {
-                option: constant.name,
-                given: shortened(&given),
-                owner: owners.join(" or "),
-                law: law.name,
-            });
-        }
-    }
-    let values = law
-        .constants
-        .iter()
-        .map(|constant| option::read(constant, &constant.kind(), options))
-        .collect::<Result<Vec<f64>, CaseError>>()?;
-    let hardening = match law.build {
-        Some(build) => build(&values, young_modulus)?,
-        None if benchmark => Hardening::benchmark(young_modulus)?,
-        None => Hardening::from_file(std::path::Path::new(&file), young_modulus)?,
-    };
-    Ok((law, values, file, hardening))
 }
 
 impl Material {

@@ -15,6 +15,7 @@ mod model;
 mod option;
 mod option_file;
 mod provenance;
+mod read;
 mod reference;
 mod reference_force;
 mod reference_regression;
@@ -28,10 +29,12 @@ pub use error::{CaseError, Warning};
 pub use geometry::check_ranks;
 pub use help::{help_text, options_markdown};
 pub use model::{
-    Case, Discretisation, Dynamics, Friction, Loading, Material, OptionSource, Output, Restart,
-    Resuming, Sheet, Stepping, Tools,
+    Case, Discretisation, Dynamics, Friction, Loading, Material, Output, Restart, Resuming, Sheet,
+    Stepping, Tools,
 };
+pub use option::OptionSource;
 pub use provenance::Difference;
 pub use reference::{Instant, Origin, ReferenceValue, Tolerance};
 pub use reference_force::ReferenceForce;
 pub use unused::check_unused;
+pub(crate) use unused::condensed_option;

@@ -1,27 +1,10 @@
 //! The case: the model a person describes, as plain numbers. Units are mm, N, MPa, g and ms.
 
-use std::collections::BTreeMap;
-
-use super::error::CaseError;
-use super::{geometry, hardening, table};
 use crate::contact::ContactLocation;
 use crate::element::Quadrature;
 use crate::material::Hardening;
 use crate::material::hardening::Declaration;
 use crate::tool::PunchMotion;
-
-/// Where the texts of options come from: PETSc's option database, or a map in tests.
-pub trait OptionSource {
-    /// The text given for the option (its name without the dash): `None` when it was not given, an empty text when it
-    /// was given without a value.
-    fn get(&self, name: &str) -> Option<String>;
-}
-
-impl OptionSource for BTreeMap<String, String> {
-    fn get(&self, name: &str) -> Option<String> {
-        BTreeMap::get(self, name).cloned()
-    }
-}
 
 /// Everything a run needs to know. Made by [`Case::read`], which refuses what cannot work.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,6 +27,23 @@ pub struct Case {
     pub output: Output,
     /// When to stop, and from where to go on.
     pub resuming: Resuming,
+}
+
+impl Case {
+    /// Length of an element along the sheet, mm.
+    pub fn element_length(&self) -> f64 {
+        self.sheet.half_length() / self.discretisation.nx as f64
+    }
+
+    /// Distance between neighbouring contact points, mm; with moving points, the length of the edge each has for itself.
+    pub fn contact_spacing(&self) -> f64 {
+        let edge = self.element_length();
+        match self.discretisation.contact_location {
+            ContactLocation::Points => edge / self.discretisation.contact_points_per_edge as f64,
+            ContactLocation::Nodes => edge / 2.0,
+            ContactLocation::Closest => edge,
+        }
+    }
 }
 
 /// The sheet: x in [0, length / 2], y in [0, thickness]; x = 0 is the plane of symmetry.
@@ -100,20 +100,20 @@ pub enum Dynamics {
 /// What the punch does: down by the stroke in `time_load`, then back by a share of it in `time_unload`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loading {
-    /// Way down, mm.
+    /// Travel down, mm.
     pub stroke: f64,
     /// Share of the stroke by which the punch goes back, 0 to 1.
     pub unload_fraction: f64,
-    /// Time for the way down, ms.
+    /// Time for it, ms.
     pub time_load: f64,
-    /// Time for the way back, ms.
+    /// Time for the travel back, ms.
     pub time_unload: f64,
     /// Whether inertia counts.
     pub dynamics: Dynamics,
 }
 
 impl Loading {
-    /// The punch's way in time.
+    /// The punch's travel in time.
     pub fn motion(&self) -> PunchMotion {
         PunchMotion {
             stroke: self.stroke,
@@ -156,9 +156,9 @@ pub struct Discretisation {
     pub contact_location: ContactLocation,
     /// Contact points on each element edge of the sheet's surfaces.
     pub contact_points_per_edge: usize,
-    /// Gap the tools' surface gives per contact pressure, mm/MPa.
+    /// Compliance of the tools' surface: how far it yields per contact pressure, mm/MPa.
     pub contact_compliance: f64,
-    /// Penetration the certificate of a step allows, mm.
+    /// Deepest penetration with which a run counts as good, mm.
     pub penetration_limit: f64,
 }
 
@@ -191,7 +191,7 @@ pub struct Stepping {
     pub fixed_steps_load: usize,
     /// Number of equal steps back; 0: as the solution allows.
     pub fixed_steps_unload: usize,
-    /// Ways of the punch, going down, that a step ends at exactly, mm.
+    /// Travels of the punch, going down, at which a step ends exactly, mm.
     pub report_strokes: Vec<f64>,
     /// Whether a solve starts from extrapolated displacements.
     pub extrapolate: bool,
@@ -206,7 +206,7 @@ pub struct Stepping {
 pub struct Output {
     /// Directory of the results.
     pub dir: String,
-    /// Fields are saved every so many accepted steps; 0: at the ends of loading and unloading only.
+    /// Accepted steps from one saving of the fields to the next; 0: at the ends of loading and unloading only.
     pub every: usize,
     /// Whether every Newton iteration is shown.
     pub iterations: bool,
@@ -236,113 +236,4 @@ pub enum Restart {
     Newest,
     /// From the checkpoint with this path.
     From(String),
-}
-
-impl Case {
-    /// The case the options describe; options that are not given have their defaults, which are the reference case.
-    ///
-    /// # Errors
-    /// The first option that is malformed or out of range, a hardening law that cannot be used, or a combination
-    /// that cannot work.
-    pub fn read(options: &dyn OptionSource) -> Result<Case, CaseError> {
-        let case = Case {
-            sheet: Sheet {
-                length: table::SHEET_LENGTH.read(options)?,
-                thickness: table::SHEET_THICKNESS.read(options)?,
-                width: table::SHEET_WIDTH.read(options)?,
-            },
-            tools: Tools {
-                punch_radius: table::PUNCH_RADIUS.read(options)?,
-                die_radius: table::DIE_RADIUS.read(options)?,
-                die_shoulder_radius: table::DIE_SHOULDER_RADIUS.read(options)?,
-            },
-            loading: Loading {
-                stroke: table::STROKE.read(options)?,
-                unload_fraction: table::UNLOAD_FRACTION.read(options)?,
-                time_load: table::TIME_LOAD.read(options)?,
-                time_unload: table::TIME_UNLOAD.read(options)?,
-                dynamics: table::DYNAMICS.read(options)?,
-            },
-            material: read_material(options)?,
-            friction: Friction {
-                coefficient: table::FRICTION_COEFFICIENT.read(options)?,
-                compliance: table::FRICTION_COMPLIANCE.read(options)?,
-            },
-            discretisation: Discretisation {
-                nx: table::SHEET_NX.read(options)?,
-                ny: table::SHEET_NY.read(options)?,
-                quadrature: table::QUADRATURE.read(options)?,
-                contact_location: table::CONTACT_LOCATION.read(options)?,
-                contact_points_per_edge: table::CONTACT_POINTS_PER_EDGE.read(options)?,
-                contact_compliance: table::CONTACT_COMPLIANCE.read(options)?,
-                penetration_limit: table::PENETRATION_LIMIT.read(options)?,
-            },
-            stepping: Stepping {
-                dt_initial: table::DT_INITIAL.read(options)?,
-                dt_min: table::DT_MIN.read(options)?,
-                dt_max: table::DT_MAX.read(options)?,
-                fixed_steps_load: table::FIXED_STEPS_LOAD.read(options)?,
-                fixed_steps_unload: table::FIXED_STEPS_UNLOAD.read(options)?,
-                report_strokes: table::REPORT_STROKES.read(options)?,
-                extrapolate: table::EXTRAPOLATE.read(options)?,
-                newton_tolerance: table::NEWTON_TOLERANCE.read(options)?,
-                newton_max_iterations: table::NEWTON_MAX_ITERATIONS.read(options)?,
-            },
-            output: Output {
-                dir: table::OUTPUT_DIR.read(options)?,
-                every: table::OUTPUT_EVERY.read(options)?,
-                iterations: table::MONITOR_ITERATIONS.read(options)?,
-                dry_run: table::DRY_RUN.read(options)?,
-            },
-            resuming: Resuming {
-                checkpoint_every: table::CHECKPOINT_EVERY.read(options)?,
-                checkpoint_minutes: table::CHECKPOINT_MINUTES.read(options)?,
-                wall_limit: table::WALL_LIMIT.read(options)?,
-                restart: table::RESTART.read(options)?,
-            },
-        };
-        geometry::check(&case)?;
-        check_step_order(&case.stepping)?;
-        Ok(case)
-    }
-
-    /// The frictionless reference case: every option at its default.
-    ///
-    /// # Errors
-    /// None unless the program's own table is broken, which the tests exclude.
-    pub fn reference() -> Result<Case, CaseError> {
-        Case::read(&BTreeMap::new())
-    }
-}
-
-fn read_material(options: &dyn OptionSource) -> Result<Material, CaseError> {
-    let young_modulus = table::YOUNG_MODULUS.read(options)?;
-    let (law, constants, file, hardening) = hardening::read(options, young_modulus)?;
-    Ok(Material {
-        young_modulus,
-        poisson_ratio: table::POISSON_RATIO.read(options)?,
-        density: table::DENSITY.read(options)?,
-        hardening_law: law,
-        hardening_constants: constants,
-        hardening_file: file,
-        hardening,
-    })
-}
-
-fn check_step_order(stepping: &Stepping) -> Result<(), CaseError> {
-    let Stepping {
-        dt_min,
-        dt_initial,
-        dt_max,
-        ..
-    } = *stepping;
-    if dt_min <= dt_initial && dt_initial <= dt_max {
-        Ok(())
-    } else {
-        Err(CaseError::StepOrder {
-            dt_min,
-            dt_initial,
-            dt_max,
-        })
-    }
 }

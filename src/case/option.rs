@@ -1,9 +1,27 @@
 //! One option of ours: its name, unit, default, range, group and meaning, and how it is read from a source.
 
+use std::collections::BTreeMap;
+
 use super::error::CaseError;
 use super::kind::Kind;
-use super::model::{Case, OptionSource};
+use super::model::Case;
 use crate::text::shortened;
+
+/// Where the texts of options come from: PETSc's option database, or a map in tests.
+pub trait OptionSource {
+    /// The text given for the option (its name without the dash): `None` when it was not given, an empty text when it
+    /// was given without a value.
+    ///
+    /// # Errors
+    /// [`CaseError::Unreadable`] if the source cannot be asked.
+    fn get(&self, name: &str) -> Result<Option<String>, CaseError>;
+}
+
+impl OptionSource for BTreeMap<String, String> {
+    fn get(&self, name: &str) -> Result<Option<String>, CaseError> {
+        Ok(BTreeMap::get(self, name).cloned())
+    }
+}
 
 /// The headings under which options are listed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,7 +66,7 @@ impl Group {
         }
     }
 
-    /// Whether its options define the physics and the mesh, as opposed to how the solution is reached and saved.
+    /// Whether its options define the physics and the mesh, and not how the solution is reached and saved.
     pub(crate) fn defines_model(self) -> bool {
         !matches!(self, Group::Stepping | Group::Output | Group::Resuming)
     }
@@ -60,7 +78,7 @@ pub(crate) struct Opt<K: Kind> {
     pub(crate) name: &'static str,
     /// Unit, or nothing.
     pub(crate) unit: &'static str,
-    /// Default as a person would write it; read in the same way as what a person writes.
+    /// Default as a person would write it; read like what a person writes.
     pub(crate) default: &'static str,
     pub(crate) group: Group,
     /// One sentence.
@@ -86,7 +104,7 @@ pub(crate) fn read<K: Kind>(
     kind: &K,
     source: &dyn OptionSource,
 ) -> Result<K::Value, CaseError> {
-    let given = source.get(option.name());
+    let given = source.get(option.name())?;
     let text = given.as_deref().unwrap_or(option.default()).trim();
     if text.is_empty() && !kind.value_may_be_missing() {
         return Err(CaseError::NoValue {

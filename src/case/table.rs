@@ -1,8 +1,8 @@
 //! The option table: every option of ours, declared once.
 //!
 //! Constants of hardening laws are declared with their laws, in `src/material/hardening/`.
-//! To add another option: an entry here, a field in `model.rs` with the line that reads it, and
-//! `UPDATE_DOCS=1 cargo test --test case_docs` for docs/options.md.
+//! To add another option: an entry here, a field in `model.rs` with the line in `read.rs` that reads
+//! it, a line in `inputs/ssnp155.opts`, and `UPDATE_DOCS=1 cargo test --test case_docs` for docs/options.md.
 
 use std::ops::Bound;
 use std::sync::LazyLock;
@@ -63,23 +63,23 @@ option_table! {
     }
     STROKE: Real {
         name: "stroke", unit: "mm", default: "28.5", group: Group::Loading, kind: Real::positive(1e5),
-        meaning: "Way of the punch from its first touch of the sheet to the lowest point.",
+        meaning: "Travel of the punch from its first touch of the sheet to the lowest point.",
         value: |case| case.loading.stroke,
     }
     UNLOAD_FRACTION: Real {
         name: "unload_fraction", unit: "", default: "0.1", group: Group::Loading,
         kind: Real(Bound::Included(0.0), Bound::Included(1.0)),
-        meaning: "Share of the stroke by which the punch goes back; with 0 the run ends at full stroke.",
+        meaning: "Share of the stroke by which the punch moves back; with 0 the run ends at full stroke.",
         value: |case| case.loading.unload_fraction,
     }
     TIME_LOAD: Real {
         name: "time_load", unit: "ms", default: "900", group: Group::Loading, kind: Real::positive(1e9),
-        meaning: "Time in which the punch goes down, at constant speed.",
+        meaning: "Time in which the punch moves down, at constant speed.",
         value: |case| case.loading.time_load,
     }
     TIME_UNLOAD: Real {
         name: "time_unload", unit: "ms", default: "100", group: Group::Loading, kind: Real::positive(1e9),
-        meaning: "Time in which the punch goes back, at constant speed.",
+        meaning: "Time in which the punch moves back, at constant speed.",
         value: |case| case.loading.time_unload,
     }
     DYNAMICS: Choice<Dynamics> {
@@ -163,13 +163,13 @@ option_table! {
     CONTACT_COMPLIANCE: Real {
         name: "contact_compliance", unit: "mm/MPa", default: "5e-5", group: Group::Discretisation,
         kind: Real::positive(1.0),
-        meaning: "How far the tools' surface gives way per contact pressure; 5e-5 is a stiffness of 2e4 MPa/mm.",
+        meaning: "Compliance of the tools' surface: how far it yields elastically per contact pressure; 5e-5 is a stiffness of 2e4 MPa/mm.",
         value: |case| case.discretisation.contact_compliance,
     }
     PENETRATION_LIMIT: Real {
         name: "penetration_limit", unit: "mm", default: "5e-3", group: Group::Discretisation,
         kind: Real::positive(1e5),
-        meaning: "Deepest penetration, at the contact points and between them, with which a run still counts as good.",
+        meaning: "Deepest penetration, at the contact points and between them, that the verdict accepts.",
         value: |case| case.discretisation.penetration_limit,
     }
     DT_INITIAL: Real {
@@ -179,7 +179,7 @@ option_table! {
     }
     DT_MIN: Real {
         name: "dt_min", unit: "ms", default: "1e-6", group: Group::Stepping, kind: Real::positive(1e9),
-        meaning: "The run gives up when a step would have to be shorter than this.",
+        meaning: "The run fails when a step would have to be shorter than this.",
         value: |case| case.stepping.dt_min,
     }
     DT_MAX: Real {
@@ -189,19 +189,19 @@ option_table! {
     }
     FIXED_STEPS_LOAD: Integer {
         name: "fixed_steps_load", unit: "", default: "0", group: Group::Stepping, kind: Integer(0, 1_000_000),
-        meaning: "So many equal steps down, each cut only where its solve is refused and where a value is reported; 0 lets \
-                  the steps grow and shrink.",
+        meaning: "Number of equal steps down; a step is shortened only where its solve is refused or a value is reported. \
+                  With 0 the steps grow and shrink.",
         value: |case| case.stepping.fixed_steps_load,
     }
     FIXED_STEPS_UNLOAD: Integer {
         name: "fixed_steps_unload", unit: "", default: "0", group: Group::Stepping, kind: Integer(0, 1_000_000),
-        meaning: "The same for the way back.",
+        meaning: "The same for the travel back.",
         value: |case| case.stepping.fixed_steps_unload,
     }
     REPORT_STROKES: List {
         name: "report_strokes", unit: "mm", default: "1,2,5,8,10,12,15,16,18,20,22,24,26,28", group: Group::Stepping,
         kind: List(1e5),
-        meaning: "Ways of the punch, going down, that a step ends at exactly; those beyond the stroke are left out.",
+        meaning: "Travels of the punch, going down, at which a step ends exactly; those beyond the stroke are left out.",
         value: |case| case.stepping.report_strokes.clone(),
     }
     EXTRAPOLATE: Flag {
@@ -216,7 +216,7 @@ option_table! {
     }
     NEWTON_MAX_ITERATIONS: Integer {
         name: "newton_max_iterations", unit: "", default: "20", group: Group::Stepping, kind: Integer(1, 1000),
-        meaning: "A solve that needs more iterations is refused and done again with a shorter step.",
+        meaning: "A solve that needs more iterations is refused and repeated with a shorter step.",
         value: |case| case.stepping.newton_max_iterations,
     }
     MONITOR_ITERATIONS: Flag {
@@ -237,19 +237,18 @@ option_table! {
     }
     OUTPUT_EVERY: Integer {
         name: "output_every", unit: "", default: "1", group: Group::Output, kind: Integer(0, 1_000_000),
-        meaning: "Fields are saved every so many accepted steps; 0 saves them at the ends of loading and unloading only.",
+        meaning: "Number of accepted steps from one saving of the fields to the next; 0 saves them at the ends of loading and unloading only.",
         value: |case| case.output.every,
     }
     CHECKPOINT_EVERY: Integer {
         name: "checkpoint_every", unit: "", default: "0", group: Group::Resuming, kind: Integer(0, 1_000_000),
-        meaning: "A checkpoint is written every so many accepted steps; 0 counts no steps.",
+        meaning: "Number of accepted steps from one checkpoint to the next; 0 counts no steps.",
         value: |case| case.resuming.checkpoint_every,
     }
     CHECKPOINT_MINUTES: Real {
         name: "checkpoint_minutes", unit: "min", default: "10", group: Group::Resuming,
         kind: Real(Bound::Included(0.0), Bound::Included(1e6)),
-        meaning: "A checkpoint is written when so many minutes on the clock have gone by since the last one; 0 looks at no \
-                  clock.",
+        meaning: "Time on the clock from one checkpoint to the next; 0 does not look at the clock.",
         value: |case| case.resuming.checkpoint_minutes,
     }
     WALL_LIMIT: WallTime {
@@ -259,8 +258,7 @@ option_table! {
     }
     RESTART: Restarting {
         name: "restart", unit: "", default: "no", group: Group::Resuming, kind: Restarting,
-        meaning: "Goes on from the newest checkpoint in -output_dir (newest, or no value), or from the one whose path is \
-                  given.",
+        meaning: "Resumes from the newest checkpoint in -output_dir (newest, or no value), or from the one with this path.",
         value: |case| case.resuming.restart.clone(),
     }
 }

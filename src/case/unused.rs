@@ -1,9 +1,17 @@
-//! Options nobody read: a slip of the pen is an error that names the option that was meant, PETSc's own are warned about.
+//! Options nobody read: a typing mistake is an error that names the option that was meant, PETSc's own are warned about.
 
 use super::error::{CaseError, Warning};
 use super::option::Described;
 use super::table::TABLE;
 use crate::text::shortened;
+
+/// The name of an option of the condensed system's solver: its prefix before that of PETSc's.
+macro_rules! condensed_option {
+    ($option:literal) => {
+        concat!("condensed_", $option)
+    };
+}
+pub(crate) use condensed_option;
 
 /// How PETSc's option names begin. Families end with an underscore, the rest are names (or beginnings of names) that stand
 /// alone; general words such as `use_` or `start_` are only listed with what follows in PETSc.
@@ -21,7 +29,7 @@ const PETSC_NAMES: &[&str] = &[
     "ao_",
     "log_",
     "sub_",
-    "condensed_",
+    condensed_option!(""),
     "options_",
     "viewer_",
     "draw_",

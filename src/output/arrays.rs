@@ -94,7 +94,7 @@ impl Arrays {
             .map_err(|_| OutputError::read(&self.path, format!("{name} is no text")))
     }
 
-    /// Closes the file and tells whether all of it was written.
+    /// Closes the file; says whether all of it was written.
     ///
     /// # Errors
     /// [`OutputError::Hdf5`], for example when the disk is full.

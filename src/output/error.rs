@@ -11,7 +11,7 @@ use crate::ranks::{broadcast_bytes, lowest_failing};
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
 pub enum OutputError {
     /// The output folder does not exist and could not be made.
-    #[error("cannot create the output folder {}: {reason}; give another one with -output_dir", path.display())]
+    #[error("cannot create the output folder {}: {reason}; choose another one with -output_dir", path.display())]
     CannotCreateFolder {
         /// The folder asked for.
         path: PathBuf,
@@ -19,13 +19,13 @@ pub enum OutputError {
         reason: String,
     },
     /// Something that is not a folder has the name of the output folder.
-    #[error("the output folder {} is a file, not a folder; give another one with -output_dir, or move the file away", path.display())]
+    #[error("the output folder {} is a file, not a folder; choose another one with -output_dir, or move the file away", path.display())]
     NotAFolder {
         /// The folder asked for.
         path: PathBuf,
     },
     /// The folder exists, but no file can be made in it.
-    #[error("the output folder {} takes no files: {reason}; give another one with -output_dir", path.display())]
+    #[error("the output folder {} takes no files: {reason}; choose another one with -output_dir", path.display())]
     NotWritable {
         /// The folder asked for.
         path: PathBuf,
@@ -33,7 +33,7 @@ pub enum OutputError {
         reason: String,
     },
     /// Something in the output folder has the name of a file of the run and cannot be written over.
-    #[error("{} cannot be written over: {reason}; move it away, or give another folder with -output_dir", path.display())]
+    #[error("{} cannot be written over: {reason}; move it away, or choose another folder with -output_dir", path.display())]
     NotReplaceable {
         /// The file.
         path: PathBuf,

@@ -148,7 +148,7 @@ fn prepare(path: &Path) -> Result<(), OutputError> {
         };
         free.map_err(|reason| OutputError::NotReplaceable { path: file, reason })?;
     }
-    // Permission bits do not tell the truth on every file system: trying does.
+    // Permission bits are not reliable on every file system: trying is.
     let probe = path.join(format!(".probe-{}", std::process::id()));
     let tried = File::create(&probe).and_then(|_| fs::remove_file(&probe));
     tried.map_err(|error| OutputError::NotWritable {
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_in_the_way_is_said_so() {
+    fn a_file_of_that_name_is_reported() {
         let file = scratch("file");
         fs::write(&file, "").unwrap();
         assert_eq!(
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_that_takes_no_files_is_said_so() {
+    fn a_folder_that_takes_no_files_is_reported() {
         // /proc refuses new files to everybody, including root.
         assert!(matches!(
             prepare(Path::new("/proc")),

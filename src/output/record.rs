@@ -81,7 +81,7 @@ pub struct Column {
 
 macro_rules! columns {
     ($($(#[doc = $meaning:literal])+ $name:ident: $kind:ty = $value:expr $(, worst: $badness:expr)?;)*) => {
-        /// What one accepted step gives. Forces are those of the whole sheet (both halves, full width) in N; energies are
+        /// One accepted step in numbers. Forces are those of the whole sheet (both halves, full width) in N; energies are
         /// those of the whole sheet in mJ = N mm; stroke counts positive downwards, displacements `dy` positive upwards.
         /// A value that was not computed is NaN.
         #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]

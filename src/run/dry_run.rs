@@ -49,27 +49,27 @@ pub(super) fn describe(case: &Case, comm: &SimpleCommunicator) -> Result<(), Run
     Ok(())
 }
 
-fn facts(
-    case: &Case,
-    system: &System,
-    shares: &[SubdomainSize],
-    landmarks: &[f64],
-) -> Vec<(&'static str, String)> {
-    let Case {
-        sheet,
-        tools,
-        loading,
-        material,
-        friction,
-        discretisation,
-        stepping,
-        ..
-    } = case;
-    let motion = loading.motion();
-    let sum = |part: fn(&SubdomainSize) -> usize| shares.iter().map(part).sum::<usize>();
-    let yields = |p: f64| format!("{:.1}", material.hardening.yield_stress(p).0);
-    let edge = sheet.half_length() / discretisation.nx as f64;
-    let mut facts = vec![
+/// A line of the description: what it is about, and what is to be said.
+type Fact = (&'static str, String);
+
+fn facts(case: &Case, system: &System, shares: &[SubdomainSize], landmarks: &[f64]) -> Vec<Fact> {
+    let mut facts = geometry(case);
+    facts.extend(material(case));
+    facts.push(("loading", loading(case)));
+    facts.push(("steps", steps(case, landmarks)));
+    let points = shares.iter().map(|share| share.contact_points).sum();
+    facts.push(("contact", contact(case, points)));
+    facts.push(("friction", friction(case)));
+    facts.extend(mesh(case, system));
+    facts.push(("memory", memory(shares)));
+    let end = number(case.loading.motion().end());
+    facts.push(("ends at", format!("t = {end} ms")));
+    facts
+}
+
+fn geometry(case: &Case) -> Vec<Fact> {
+    let Case { sheet, tools, .. } = case;
+    vec![
         (
             "sheet",
             format!(
@@ -102,6 +102,13 @@ fn facts(
                 sheet.thickness
             ),
         ),
+    ]
+}
+
+fn material(case: &Case) -> [Fact; 2] {
+    let material = &case.material;
+    let yields = |p: f64| format!("{:.1}", material.hardening.yield_stress(p).0);
+    [
         (
             "material",
             format!(
@@ -121,72 +128,73 @@ fn facts(
                 yields(0.2)
             ),
         ),
-        (
-            "loading",
-            format!(
-                "down by {} mm in {} ms{}; {}",
-                loading.stroke,
-                loading.time_load,
-                if loading.unload_fraction > 0.0 {
-                    format!(
-                        ", back by {} mm in {} ms",
-                        number(loading.unload_fraction * loading.stroke),
-                        loading.time_unload
-                    )
-                } else {
-                    String::new()
-                },
-                match loading.dynamics {
-                    Dynamics::Slow => "with inertia",
-                    Dynamics::None => "static",
-                }
-            ),
-        ),
-        (
-            "steps",
-            format!(
-                "first {} ms, then {} to {} ms; {} times are hit exactly, so there are at least {} steps",
-                number(stepping.dt_initial),
-                number(stepping.dt_min),
-                number(stepping.dt_max),
-                landmarks.len(),
-                least_steps(landmarks, stepping.dt_max)
-            ),
-        ),
-        (
-            "contact",
-            format!(
-                "{} points on both faces, {}; give {} mm/MPa",
-                sum(|share| share.contact_points),
-                match discretisation.contact_location {
-                    ContactLocation::Points => format!(
-                        "{} per edge, {} mm apart",
-                        discretisation.contact_points_per_edge,
-                        number(edge / discretisation.contact_points_per_edge as f64)
-                    ),
-                    ContactLocation::Nodes =>
-                        format!("at the nodes, {} mm apart", number(0.5 * edge)),
-                    ContactLocation::Closest => "one per edge that moves along it".to_owned(),
-                },
-                discretisation.contact_compliance
-            ),
-        ),
-        (
-            "friction",
-            if friction.coefficient > 0.0 {
-                format!(
-                    "coefficient {}, elastic slip {} mm/MPa",
-                    friction.coefficient, friction.compliance
-                )
-            } else {
-                "none".to_owned()
-            },
-        ),
-    ];
-    let local = system.local();
-    let mesh = &local.problem().mesh;
-    let gauss = local.problem().quadrature.point_count();
-    facts.extend([
+    ]
+}
+
+fn loading(case: &Case) -> String {
+    let loading = &case.loading;
+    let back = if loading.unload_fraction > 0.0 {
+        format!(
+            ", back by {} mm in {} ms",
+            number(loading.unload_fraction * loading.stroke),
+            loading.time_unload
+        )
+    } else {
+        String::new()
+    };
+    let kind = match loading.dynamics {
+        Dynamics::Slow => "with inertia",
+        Dynamics::None => "static",
+    };
+    format!(
+        "down by {} mm in {} ms{back}; {kind}",
+        loading.stroke, loading.time_load
+    )
+}
+
+fn steps(case: &Case, landmarks: &[f64]) -> String {
+    let stepping = &case.stepping;
+    format!(
+        "first {} ms, then {} to {} ms; {} times are hit exactly, so there are at least {} steps",
+        number(stepping.dt_initial),
+        number(stepping.dt_min),
+        number(stepping.dt_max),
+        landmarks.len(),
+        least_steps(landmarks, stepping.dt_max)
+    )
+}
+
+fn contact(case: &Case, points: usize) -> String {
+    let (sizes, spacing) = (&case.discretisation, number(case.contact_spacing()));
+    let places = match sizes.contact_location {
+        ContactLocation::Points => {
+            let per_edge = sizes.contact_points_per_edge;
+            format!("{per_edge} per edge, {spacing} mm apart")
+        }
+        ContactLocation::Nodes => format!("at the nodes, {spacing} mm apart"),
+        ContactLocation::Closest => "one per edge that moves along it".to_owned(),
+    };
+    let compliance = sizes.contact_compliance;
+    format!("{points} points on both faces, {places}; compliance {compliance} mm/MPa")
+}
+
+fn friction(case: &Case) -> String {
+    let friction = &case.friction;
+    if friction.coefficient > 0.0 {
+        format!(
+            "coefficient {}, elastic slip {} mm/MPa",
+            friction.coefficient, friction.compliance
+        )
+    } else {
+        "none".to_owned()
+    }
+}
+
+fn mesh(case: &Case, system: &System) -> [Fact; 2] {
+    let problem = system.local().problem();
+    let mesh = &problem.mesh;
+    let displacements = 2 * mesh.nodes.len();
+    [
         (
             "mesh",
             format!(
@@ -194,25 +202,21 @@ fn facts(
                 mesh.nx,
                 mesh.ny,
                 mesh.elements.len(),
-                number(edge),
-                number(sheet.thickness / mesh.ny as f64),
+                number(case.element_length()),
+                number(case.sheet.thickness / mesh.ny as f64),
                 mesh.nodes.len(),
-                gauss * mesh.elements.len()
+                problem.quadrature.point_count() * mesh.elements.len()
             ),
         ),
         (
             "unknowns",
             format!(
-                "{}: {} displacements, {} of contact",
+                "{}: {displacements} displacements, {} of contact",
                 system.unknown_count(),
-                2 * mesh.nodes.len(),
-                system.unknown_count() - 2 * mesh.nodes.len()
+                system.unknown_count() - displacements
             ),
         ),
-        ("memory", memory(shares)),
-        ("ends at", format!("t = {} ms", number(motion.end()))),
-    ]);
-    facts
+    ]
 }
 
 fn memory(shares: &[SubdomainSize]) -> String {
@@ -228,7 +232,7 @@ fn memory(shares: &[SubdomainSize]) -> String {
     format!("about {sum:.0} MB on {ranks} (peak of resident memory; measured runs lie within 10 %)")
 }
 
-/// So many steps of at most `longest` (ms) hit all of these times.
+/// The number of steps of at most `longest` (ms) that hit all of these times.
 fn least_steps(landmarks: &[f64], longest: f64) -> usize {
     let starts = std::iter::once(&0.0).chain(landmarks);
     let pieces = starts.zip(landmarks).map(|(start, end)| end - start);

@@ -39,7 +39,7 @@ pub enum RunError {
 pub enum RestartError {
     /// No checkpoint in the output folder.
     #[error(
-        "-restart: there is no checkpoint in {}; run without -restart, or give the path of a checkpoint", folder.display()
+        "-restart: there is no checkpoint in {}; run without -restart, or specify the path of a checkpoint", folder.display()
     )]
     None {
         /// The folder.
@@ -47,7 +47,7 @@ pub enum RestartError {
     },
     /// The checkpoint belongs to another problem.
     #[error(
-        "-restart: the checkpoint {} belongs to another problem ({differences}); give the same options, or run without \
+        "-restart: the checkpoint {} belongs to another problem ({differences}); use the same options, or run without \
          -restart", path.display()
     )]
     OtherProblem {

@@ -51,7 +51,7 @@ use stop_watch::StopWatch;
 /// Runs the case to its end or to the step that cannot be solved. Collective.
 ///
 /// # Errors
-/// If the run cannot be set up, or PETSc or a file fails on the way.
+/// If the run cannot be set up, or PETSc or a file fails during it.
 pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome>, RunError> {
     let clock = Instant::now();
     // Before any file is made: neither a typing mistake nor a question may cost an earlier run's results.

@@ -3,9 +3,9 @@
 
 use crate::case::{self, Case, CaseError};
 
-/// Up to so many Newton iterations the step may grow.
+/// The step may grow up to this number of Newton iterations.
 const EASY_ITERATIONS: usize = 14;
-/// Beyond so many it shrinks.
+/// Beyond this number it shrinks.
 const HARD_ITERATIONS: usize = 20;
 /// Factor of growth and shrinkage.
 const FACTOR: f64 = 1.5;
@@ -78,7 +78,7 @@ impl StepControl {
     }
 
     /// Next step after one of length `dt` to time `t` was accepted with `iterations` iterations; a
-    /// `dt` shorter than planned tells that solves were refused.
+    /// `dt` shorter than planned shows that solves were refused.
     pub fn accepted(&mut self, t: f64, dt: f64, iterations: usize) -> f64 {
         if dt < (1.0 - 1e-6) * self.planned {
             self.wanted = dt;

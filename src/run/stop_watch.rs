@@ -17,7 +17,7 @@ const SIGNALS: [(i32, &str); 3] = [
     (SIGTERM, "SIGTERM"),
     (SIGUSR1, "SIGUSR1"),
 ];
-/// So many times the longest step and the longest checkpoint so far are kept in hand before the wall limit.
+/// Before the wall limit, the longest step and the longest checkpoint until now are kept in hand this many times.
 const RESERVE: u32 = 2;
 /// What the end of a run takes besides, at least.
 const LEAST_RESERVE: Duration = Duration::from_millis(300);
@@ -44,7 +44,7 @@ impl StopCause {
     pub fn sentence(self) -> String {
         match self {
             Self::Signal(name) => format!("the run was asked to end by {name}"),
-            Self::WallLimit => "the time given by -wall_limit is nearly used up".to_owned(),
+            Self::WallLimit => "the time that -wall_limit allows is nearly used up".to_owned(),
         }
     }
 }

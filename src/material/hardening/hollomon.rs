@@ -66,7 +66,7 @@ impl Hollomon {
                 law: LAW.name,
                 problem: format!(
                     "K p^n exceeds the elastic limit of {elastic_limit} MPa from a plastic strain of {takes_over:.1e} on, \
-                     with a slope of {slope:.1e} MPa there, and at most {STEEPEST:e} MPa can be computed with; give a greater \
+                     with a slope of {slope:.1e} MPa there, and at most {STEEPEST:e} MPa can be computed with; use a larger \
                      -hollomon_elastic_limit or -hollomon_n"
                 ),
             });

@@ -22,7 +22,7 @@ const BENCHMARK: &str = include_str!("../../../inputs/reference/hardening.csv");
 pub enum HardeningError {
     /// The file cannot be read as text.
     #[error(
-        "hardening table {origin} cannot be read ({reason}); give the path of a text file with the columns strain,stress"
+        "hardening table {origin} cannot be read ({reason}); specify the path of a text file with the columns strain,stress"
     )]
     Unreadable {
         /// The path.

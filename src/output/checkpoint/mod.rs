@@ -27,7 +27,7 @@ const REPLACED: &str = ".old";
 /// the two newest are removed.
 ///
 /// # Errors
-/// Whatever `fill` gives, or [`OutputError::Write`], for example when the disk is full; nothing but complete
+/// Whatever `fill` returns, or [`OutputError::Write`], for example when the disk is full; nothing but complete
 /// checkpoints is left then, and the earlier ones are as they were.
 pub fn write(
     folder: &Path,

@@ -15,7 +15,7 @@ use super::super::{OutputDir, OutputError};
 
 /// Bytes of packed states that a page may hold; text makes a third more of them.
 const BUDGET: usize = 2_400_000;
-/// Up to so many elements their mid-side nodes are kept, and edges are drawn curved.
+/// Up to this number of elements their mid-side nodes are kept, and edges are drawn curved.
 const CURVED_UP_TO: usize = 600;
 /// Steps of a packed value between its least and its greatest.
 const STEPS: f64 = 65535.0;
@@ -47,13 +47,13 @@ pub(super) struct States {
     contact: Contact,
 }
 
-/// Contact points that carry, state by state.
+/// Contact points that carry a force, state by state.
 #[derive(Serialize)]
 struct Contact {
     /// Place along the undeformed sheet, mm, and 1 for points under the punch, 0 for those on the die.
     along: Vec<f32>,
     upper: Vec<u8>,
-    /// Number of points that carry in each state.
+    /// Number of points that carry a force in each state.
     counts: Vec<usize>,
     /// For each of them: number of the point, 32 bits.
     points: String,

@@ -10,7 +10,7 @@ use super::datasets::{extendable, fixed, write_unit, write_values};
 use super::steps::StepTable;
 use super::types::{ArraySpec, Kind, Part, Values};
 
-/// What a new file gives the series: the point arrays, the step table and the counter of steps.
+/// What the series needs of a new file: the point arrays, the step table and the counter of steps.
 pub(super) type Growing = (Vec<Dataset>, StepTable, Attribute);
 
 /// This rank's place among all ranks.

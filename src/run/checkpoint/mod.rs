@@ -88,7 +88,7 @@ pub(super) fn open(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Resu
     let candidates = match &case.resuming.restart {
         Restart::No => return Ok(None),
         Restart::From(path) => vec![PathBuf::from(path)],
-        // The folder may change while the ranks look at it: rank 0 does, and tells how many there are.
+        // The folder may change while the ranks look at it: rank 0 does, and says how many there are.
         Restart::Newest => checkpoint::complete(folder),
     };
     let chosen = if comm.rank() == 0 {
@@ -146,14 +146,14 @@ fn broadcast(comm: &SimpleCommunicator, text: &mut String) {
     *text = String::from_utf8_lossy(&bytes).into_owned();
 }
 
-/// The checksum by which a checkpoint knows the hardening curve: the shortest texts of its numbers tell all their bits.
+/// The checksum by which a checkpoint knows the hardening curve: the shortest texts of its numbers contain all their bits.
 pub(super) fn hardening_checksum(case: &Case) -> u32 {
     crc32fast::hash(format!("{:?}", case.material.hardening).as_bytes())
 }
 
-/// Refuses the checkpoint of another problem; tells what else is not as it was.
+/// Refuses the checkpoint of another problem; says what else is not as it was.
 fn compare(case: &Case, path: &Path, state: &RunState) -> Result<Vec<String>, RestartError> {
-    let (mut problem, way) = case.differences_from_saved(&state.options);
+    let (mut problem, stepping) = case.differences_from_saved(&state.options);
     // The constants of other laws are options, so differences in them are known already.
     let tables = matches!(case.material.hardening, Hardening::Table(_))
         && !problem.iter().any(|known| known.option == "hardening");
@@ -176,10 +176,10 @@ fn compare(case: &Case, path: &Path, state: &RunState) -> Result<Vec<String>, Re
         });
     }
     let mut notes = Vec::new();
-    if !way.is_empty() {
+    if !stepping.is_empty() {
         notes.push(format!(
             "from here on the steps are chosen otherwise: {}",
-            list(&way)
+            list(&stepping)
         ));
     }
     let revision = env!("SSNP155_REVISION");

@@ -1,4 +1,4 @@
-//! Checksums of the files a run was made from: enough to tell later whether they are still the same.
+//! Checksums of the files a run was made from: enough to see later whether they are still the same.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -40,9 +40,14 @@ pub(super) fn judge(
             });
         }
     }
-    if records.is_empty() {
-        return Ok(table);
+    if !records.is_empty() {
+        table.rows.extend(certificate(case, records));
     }
+    Ok(table)
+}
+
+/// The worst values of the certificate over all steps, each with its limit.
+fn certificate(case: &Case, records: &[StepRecord]) -> Vec<VerdictRow> {
     let worst = |badness: fn(&StepRecord) -> f64| {
         // NaN wins: it must not pass as small.
         records
@@ -50,47 +55,40 @@ pub(super) fn judge(
             .map(badness)
             .fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a })
     };
-    let mut limit = |quantity: &str, value: f64, bound: f64, unit: &str| {
+    let limit = |quantity: &str, badness, bound: f64, unit: &str| {
         let source = "certificate of every step";
-        table.rows.push(VerdictRow::new(
-            quantity,
-            value,
-            bound,
-            Tolerance::AtMost,
-            unit,
-            source,
-        ));
+        let most = Tolerance::AtMost;
+        VerdictRow::new(quantity, worst(badness), bound, most, unit, source)
     };
-    let penetration = worst(|r| r.max_penetration_mm);
-    limit(
-        "deepest penetration",
-        penetration,
-        case.discretisation.penetration_limit,
-        "mm",
-    );
-    limit(
-        "largest tensile force of a contact point, of the punch force",
-        worst(|r| -r.min_contact_force_N / r.force_N.max(LEAST_FORCE)),
-        TENSION_LIMIT,
-        "1",
-    );
-    let imbalance = worst(|r| r.balance_error.abs());
-    limit(
-        "punch force less die force and inertia",
-        imbalance,
-        BALANCE_LIMIT,
-        "1",
-    );
-    if case.friction.coefficient > 0.0 {
-        let excess = worst(|r| r.cone_violation);
+    let mut rows = vec![
         limit(
+            "deepest penetration",
+            |r| r.max_penetration_mm,
+            case.discretisation.penetration_limit,
+            "mm",
+        ),
+        limit(
+            "largest tensile force of a contact point, of the punch force",
+            |r| -r.min_contact_force_N / r.force_N.max(LEAST_FORCE),
+            TENSION_LIMIT,
+            "1",
+        ),
+        limit(
+            "punch force less die force and inertia",
+            |r| r.balance_error.abs(),
+            BALANCE_LIMIT,
+            "1",
+        ),
+    ];
+    if case.friction.coefficient > 0.0 {
+        rows.push(limit(
             "friction beyond its cone, of the largest",
-            excess,
+            |r| r.cone_violation,
             CONE_LIMIT,
             "1",
-        );
+        ));
     }
-    Ok(table)
+    rows
 }
 
 fn when(value: &ReferenceValue) -> String {

@@ -68,33 +68,44 @@ pub(super) fn summarise(
         ]),
         worst: worst_values(records),
         verdicts,
-        provenance: Provenance {
-            version: text(env!("CARGO_PKG_VERSION")),
-            git_revision: text(env!("SSNP155_REVISION")),
-            petsc_version: session.version(),
-            mpi_ranks: comm.size().unsigned_abs(),
-            build: BTreeMap::from([
-                (text("petsc_headers"), text(env!("SSNP155_PETSC"))),
-                (
-                    text("direct_solver"),
-                    outcome.factor_solver.clone().unwrap_or_default(),
-                ),
-                (text("unknowns"), outcome.unknowns.to_string()),
-                (
-                    text("blas"),
-                    Blas::loaded().map_or_else(|| text("not known"), |blas| blas.to_string()),
-                ),
-            ]),
-            inputs: inputs::checksums(case),
-            options: case
-                .options()
-                .into_iter()
-                .map(|(name, value)| (text(name), value))
-                .collect(),
-        },
+        provenance: provenance(case, outcome, session, comm),
         timing: Timing {
             cpu_s: outcome.cpu_seconds,
             wall_s: outcome.wall_seconds,
         },
     })
+}
+
+/// What made the result.
+fn provenance(
+    case: &Case,
+    outcome: &Outcome,
+    session: &Session,
+    comm: &impl Communicator,
+) -> Provenance {
+    let text = |value: &str| value.to_owned();
+    Provenance {
+        version: text(env!("CARGO_PKG_VERSION")),
+        git_revision: text(env!("SSNP155_REVISION")),
+        petsc_version: session.version(),
+        mpi_ranks: comm.size().unsigned_abs(),
+        build: BTreeMap::from([
+            (text("petsc_headers"), text(env!("SSNP155_PETSC"))),
+            (
+                text("direct_solver"),
+                outcome.factor_solver.clone().unwrap_or_default(),
+            ),
+            (text("unknowns"), outcome.unknowns.to_string()),
+            (
+                text("blas"),
+                Blas::loaded().map_or_else(|| text("not known"), |blas| blas.to_string()),
+            ),
+        ]),
+        inputs: inputs::checksums(case),
+        options: case
+            .options()
+            .into_iter()
+            .map(|(name, value)| (text(name), value))
+            .collect(),
+    }
 }

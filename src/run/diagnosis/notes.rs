@@ -28,14 +28,11 @@ pub(in crate::run) fn notes(case: &Case, records: &[StepRecord]) -> Vec<String> 
         .map(|record| record.max_penetration_mm)
         .fold(0.0, f64::max);
     let sizes = &case.discretisation;
-    let edge = case.sheet.half_length() / sizes.nx as f64;
-    let (spacing, points) = match sizes.contact_location {
-        ContactLocation::Points => (
-            edge / sizes.contact_points_per_edge as f64,
-            "contact points",
-        ),
-        ContactLocation::Nodes => (0.5 * edge, "contact points (nodes)"),
-        ContactLocation::Closest => (edge, "edges with one moving contact point each"),
+    let spacing = case.contact_spacing();
+    let points = match sizes.contact_location {
+        ContactLocation::Points => "contact points",
+        ContactLocation::Nodes => "contact points (nodes)",
+        ContactLocation::Closest => "edges with one moving contact point each",
     };
     // Between the points of an edge the tool penetrates with the square of their distance.
     let enough = MESH_RESERVE * sizes.nx as f64 * (deepest / limit).sqrt();

@@ -10,7 +10,7 @@ use crate::mesh::SurfaceSide;
 use crate::system::{ContactPlace, ElementFailure, FailedElement, System};
 use crate::text::number;
 
-/// Every way in which a contact point can chatter; the place in this list marks it among the ranks.
+/// Every kind of chattering; the place in this list is its number among the ranks.
 const KINDS: [Chattering; 2] = [Chattering::OpenClose, Chattering::StickSlip];
 
 /// A Newton solve that did not converge. The same on every rank.
@@ -71,7 +71,7 @@ impl Refusal {
         self.reason == SnesReason::DivergedIterations && self.element.is_none()
     }
 
-    /// The points that chatter in one way and where they are, in words; nothing if there are none.
+    /// The points that chatter so and where they are, in words; nothing if there are none.
     pub fn chattering_in_words(&self, kind: Chattering) -> Option<String> {
         let how = match kind {
             Chattering::OpenClose => "open and close",
@@ -93,7 +93,7 @@ impl Refusal {
         })
     }
 
-    /// Number and range of the points of one face that chatter in one way.
+    /// Number and range of the points of one face that chatter so.
     fn range_of(&self, kind: Chattering, side: SurfaceSide, place: &str) -> Option<String> {
         let points = self
             .chattering

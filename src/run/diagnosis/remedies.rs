@@ -197,9 +197,8 @@ impl Stopped<'_> {
     }
 
     fn long_elements(&self) -> bool {
-        let (sheet, sizes) = (&self.case.sheet, &self.case.discretisation);
-        let length = sheet.half_length() / sizes.nx as f64;
-        length > LONG * sheet.thickness / sizes.ny as f64
+        let height = self.case.sheet.thickness / self.case.discretisation.ny as f64;
+        self.case.element_length() > LONG * height
     }
 
     fn iterations(&self, to: usize) -> String {

@@ -1,4 +1,4 @@
-//! In: accepted steps and what can be told of them. Out: monitor, history, fields, figures and checkpoints, through the
+//! In: accepted steps and what is known of them. Out: monitor, history, fields, figures and checkpoints, through the
 //! writers of the output.
 //! Never: how a file is written, or a choice of the run.
 

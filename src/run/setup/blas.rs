@@ -24,7 +24,7 @@ const THREADED: &[&str] = &["pthread", "openmp", "mkl", "libopenblas"];
 const LIMITS: &[&str] = &["OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"];
 
 impl Blas {
-    /// The one that is loaded; none where the system does not tell.
+    /// The one that is loaded; none where the operating system does not show it.
     pub(in crate::run) fn loaded() -> Option<Self> {
         let maps = std::fs::read_to_string("/proc/self/maps").ok()?;
         let limit = LIMITS
@@ -50,7 +50,7 @@ impl Blas {
         })
     }
 
-    /// What is wrong with it for this many ranks on a machine with so many cores, and what to do; each a
+    /// What is wrong with it for this many ranks on a machine with this number of cores, and what to do; each a
     /// sentence.
     fn complaints(&self, ranks: usize, cores: usize) -> Vec<String> {
         let mut complaints = Vec::new();

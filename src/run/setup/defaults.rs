@@ -1,4 +1,4 @@
-//! PETSc options this program chooses; whatever the user gives goes before them.
+//! PETSc options this program chooses; whatever the user sets takes precedence.
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;

@@ -5,6 +5,7 @@ use std::rc::Rc;
 
 use petsc::{CallbackError, Failure, Matrix, MatrixRef, SnesRef, VectorRef, options};
 
+use crate::case::condensed_option as condensed;
 use crate::system::{
     CondensedMethod, CondensedSolve, EvaluationError, History, JacobianEntries, SolverChoice,
     System,
@@ -22,13 +23,6 @@ const PETSC_DEFAULTS: &[(&str, &str)] = &[
     // In two dimensions approximate minimum degree orders fastest and fills hardly more.
     ("mat_mumps_icntl_7", "0"),
 ];
-
-/// An option of the condensed system's solver.
-macro_rules! condensed {
-    ($option:literal) => {
-        concat!("condensed_", $option)
-    };
-}
 
 /// The direct solver of the condensed system.
 const PACKAGE: &str = condensed!("pc_factor_mat_solver_type");
