@@ -6,22 +6,19 @@ mod worker;
 
 use std::process::ExitCode;
 
-use common::small_problem;
+use common::{Noise, small_problem};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 use petsc::Vector;
 use ssnp155::ranks::{broadcast_bytes, gather_lists};
-use ssnp155::system::{EvaluationError, History, Released, System, SystemError};
+use ssnp155::system::{EvaluationError, History, Released, Snapshot, System, SystemError};
 
 fn main() -> ExitCode {
-    worker::on_ranks(
-        "a_failure_of_one_rank_is_that_of_all_and_a_released_sheet_the_same",
-        &[1, 2, 3],
-        |world| {
-            one_rank_fails(world);
-            released_problem_is_the_same(world);
-        },
-    )
+    worker::on_ranks("what_one_rank_knows_is_known_to_all", &[1, 2, 3], |world| {
+        one_rank_fails(world);
+        released_problem_is_the_same(world);
+        history_is_restored(world);
+    })
 }
 
 /// Every rank has these bytes.
@@ -119,4 +116,35 @@ fn released_problem_is_the_same(world: &SimpleCommunicator) {
     assert!(evaluated.is_ok());
     let norms = gather_lists(world, &[residual.norm_max().unwrap()]);
     assert!(norms.iter().all(|&norm| norm < 1e-14), "{norms:?}");
+}
+
+/// A snapshot brings every rank its history back, to the last bit, and one of another mesh is refused.
+fn history_is_restored(world: &SimpleCommunicator) {
+    let mut problem = small_problem(12, 2);
+    problem.friction_coefficient = 0.2;
+    let system = System::new(problem, world.duplicate()).unwrap();
+    let mut unknowns = system.initial_unknowns().unwrap();
+    let owned = system.owned_displacements();
+    let mut noise = Noise::new(7 + world.rank() as u64);
+    // Large enough to yield, with friction at every point.
+    for (i, value) in unknowns.write().unwrap().iter_mut().enumerate() {
+        *value = if i < owned { 3e-3 } else { 1e-4 } * noise.next();
+    }
+    let start = History::virgin(system.local());
+    let history = system.advance(&start, 30.0, &unknowns).unwrap();
+    assert_ne!(history, start);
+    let mut snapshot = Snapshot::of(&system, &history);
+    // Only the first rank has it so far.
+    for part in [
+        &mut snapshot.gauss_points,
+        &mut snapshot.contact_points,
+        &mut snapshot.friction_work,
+    ] {
+        *part = gather_lists(world, part);
+    }
+    assert_eq!(snapshot.restore(&system).unwrap(), history);
+    snapshot.contact_points.pop();
+    let refused = snapshot.restore(&system).unwrap_err();
+    assert_eq!(refused.what, "the contact points");
+    assert_eq!(refused.found + 1, refused.expected);
 }

@@ -127,15 +127,8 @@ impl Subdomain {
                 contacts.push(contact);
             }
         }
-        let local_value = |value: &NodalValue| {
-            let local = local_of.get(&value.node)?;
-            Some(LocalValue {
-                unknown: 2 * local + value.component,
-                value: value.value,
-                factor: value.factor.clone(),
-            })
-        };
-        let loads = problem.loads.iter().filter_map(local_value);
+        let mut loads = local_values(&problem.loads, &local_of);
+        loads.retain(|load| owned[load.unknown / 2]);
         Self {
             coordinates: nodes.iter().map(|&n| mesh.nodes[n]).collect(),
             connectivity: elements
@@ -146,8 +139,8 @@ impl Subdomain {
                 .iter()
                 .map(|&e| Quad8::new(&mesh.elements[e].map(|n| mesh.nodes[n]), problem.quadrature))
                 .collect(),
-            supports: problem.supports.iter().filter_map(local_value).collect(),
-            loads: loads.filter(|load| owned[load.unknown / 2]).collect(),
+            supports: local_values(&problem.supports, &local_of),
+            loads,
             owned,
             nodes,
             elements,
@@ -234,6 +227,19 @@ fn nodes_of<'a>(elements: impl Iterator<Item = &'a [usize; 8]>) -> Vec<usize> {
     nodes.sort_unstable();
     nodes.dedup();
     nodes
+}
+
+/// Those of these values that are at local nodes.
+fn local_values(values: &[NodalValue], local_of: &HashMap<usize, usize>) -> Vec<LocalValue> {
+    let local_value = |value: &NodalValue| {
+        let local = local_of.get(&value.node)?;
+        Some(LocalValue {
+            unknown: 2 * local + value.component,
+            value: value.value,
+            factor: value.factor.clone(),
+        })
+    };
+    values.iter().filter_map(local_value).collect()
 }
 
 /// The contact points of a surface edge of the mesh; none on a face without a tool.
