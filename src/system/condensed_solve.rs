@@ -24,7 +24,7 @@ pub struct SolverChoice {
 /// Who solves the condensed system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CondensedMethod {
-    /// [Substructures](super::substructures) where there is more than one rank and little between them, otherwise as
+    /// By substructures where there is more than one rank and little between them, otherwise as
     /// [`CondensedMethod::Whole`].
     Substructures,
     /// A linear solver of PETSc for the whole matrix.

@@ -44,7 +44,8 @@ pub use error::{
 pub use history::History;
 pub use measures::Measures;
 pub use node_samples::NodeSample;
-pub use numbering::{Numbering, UNKNOWNS_PER_POINT};
+pub use numbering::Numbering;
+use numbering::UNKNOWNS_PER_POINT;
 pub use problem::{Factor, NodalValue, Problem, Tool};
 pub use released::Released;
 pub use snapshot::Snapshot;
@@ -213,7 +214,7 @@ impl System {
     }
 
     /// The undeformed sheet resting on the die, with the gaps it has and a first guess of where it
-    /// will be held: see [`Subdomain::start_values`]. Collective.
+    /// will be held. Collective.
     ///
     /// # Errors
     /// If PETSc fails.

@@ -5,7 +5,7 @@ use super::problem::Problem;
 use crate::mesh::Partition;
 
 /// Unknowns of a contact point: multiplier and gap.
-pub const UNKNOWNS_PER_POINT: usize = 2;
+pub(super) const UNKNOWNS_PER_POINT: usize = 2;
 
 /// Owners and rows of all unknowns, the same on every rank.
 #[derive(Clone, Debug)]
