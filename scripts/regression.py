@@ -4,7 +4,7 @@
   scripts/regression.py [--write]
 
 Runs each case on one rank with the band solver (inputs/fastest.opts), whose values go to the file, on one rank with MUMPS,
-and the two without springback on 2 ranks, which change nothing but rounding. The tolerance of a value is 1e-8 of it, and ten
+and the first one on 2 ranks, which change nothing but rounding. The tolerance of a value is 1e-8 of it, and ten
 times the spread of the runs, rounded up to 1, 2 or 5, where that is more: after d = 20 mm the sheet snaps through between
 punch and die, and rounding decides on the steps. Without --write the table is only shown, with the spread. The file is to be
 written anew only where a change is meant to change results, and the commit says so. The program is
@@ -111,8 +111,8 @@ def main(arguments):
         sys.exit(__doc__)
     lines, table = [], []
     for case in CASES:
-        # The way down is the same with and without springback.
-        variants = [variant for variant in VARIANTS if variant != "2-ranks" or not case.endswith("springback")]
+        # Several ranks take long on a busy machine, and the path of the first case is the most sensitive.
+        variants = [variant for variant in VARIANTS if variant != "2-ranks" or case == CASES[0]]
         results = {variant: run(case, variant) for variant in variants}
         table += [line(case, variant, *result) for variant, result in results.items()]
         by_variant = {variant: quantities(*result) for variant, result in results.items()}

@@ -40,7 +40,7 @@ function drawPressure() {
   o.series = [
     { name: "punch side, shown upwards", color: PUNCH_MARK, kind: "stems", width: 2, ...up },
     { name: "die side, shown downwards", color: DIE_MARK, kind: "stems", width: 2, ...low },
-    ...STATES.map(([name, color], k) => ({ name: `friction traction, ${name}`, color, kind: "marks", radius: 1.5, ...friction[k] })),
+    ...STATES.map(([name, color], k) => ({ name: `friction traction, ${name}`, color, kind: "marks", radius: 2.4, ...friction[k] })),
   ];
   const most = Math.max(10, ...up.y, ...low.y.map(v => -v)), step = ticks(0, most, 3)[1] || 10, end = Math.ceil(most / step) * step;
   o.yRange = [low.x.length ? -end : 0, up.x.length || !low.x.length ? end : 0];
