@@ -1,13 +1,19 @@
 //! Bakes provenance into the program: git revision and the PETSc it is built against.
 
-use std::process::Command;
+use std::{env, process::Command};
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rerun-if-changed=.git/HEAD");
     println!("cargo:rerun-if-changed=.git/refs");
     println!("cargo:rustc-env=SSNP155_REVISION={}", revision());
-    println!("cargo:rustc-env=SSNP155_PETSC={}", petsc_version());
+    let petsc = |name: &str| env::var(format!("DEP_PETSC_RS_{name}"));
+    let version = petsc("VERSION").unwrap_or_else(|_| "unknown".to_owned());
+    println!("cargo:rustc-env=SSNP155_PETSC={version}");
+    // A PETSc of one's own lies where the loader does not look by itself.
+    if let Ok(folder) = petsc("LIBRARY") {
+        println!("cargo:rustc-link-arg=-Wl,-rpath,{folder}");
+    }
 }
 
 /// The commit, with a mark if tracked files differ from it; `unknown` outside a repository.
@@ -24,11 +30,4 @@ fn revision() -> String {
         },
         None => "unknown".to_owned(),
     }
-}
-
-fn petsc_version() -> String {
-    let quiet = pkg_config::Config::new()
-        .cargo_metadata(false)
-        .probe("petsc");
-    quiet.map_or_else(|_| "unknown".to_owned(), |library| library.version)
 }

@@ -1,15 +1,18 @@
-# Sourced by the other scripts: how Open MPI and BLAS behave on small machines and in containers.
+# Sourced by the other scripts: how Open MPI and BLAS behave on small machines and in containers. Open MPI 5 has handed
+# the start of the ranks to PRRTE, whose settings have names of their own; each version ignores the other's, and so does
+# MPICH.
 
 # One thread per rank; the ranks are the parallelism.
 export OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1
 # Jobs side by side would otherwise all be pinned to the first core.
-export OMPI_MCA_hwloc_base_binding_policy=none
+export OMPI_MCA_hwloc_base_binding_policy=none PRTE_MCA_hwloc_default_binding_policy=none
 # More ranks than cores are slow but correct.
-export OMPI_MCA_rmaps_base_oversubscribe=1
+export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
 # A rank that waits must not keep the core from one that works: without this, a busy machine is many times slower.
 export OMPI_MCA_mpi_yield_when_idle=1
 # Containers often run as root, and without the rights for single-copy messages.
 if [ "$(id -u)" -eq 0 ]; then
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+    export PRTE_ALLOW_RUN_AS_ROOT=1 PRTE_ALLOW_RUN_AS_ROOT_CONFIRM=1
 fi
-export OMPI_MCA_btl_vader_single_copy_mechanism=none
+export OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_smsc=^cma

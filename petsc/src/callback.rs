@@ -65,7 +65,7 @@ pub(crate) unsafe fn table<T: Default + 'static>(
     // SAFETY: only `attach` stores objects under `name`: containers with a pointer from
     // `Rc::<T>::into_raw`, whose count is at least one as long as the object lives.
     unsafe {
-        check(sys::PetscContainerGetPointer(found.cast(), &mut pointer))?;
+        check(sys::petsc_rs_container_get(found.cast(), &mut pointer))?;
         Rc::increment_strong_count(pointer.cast::<T>().cast_const());
         Ok(Rc::from_raw(pointer.cast::<T>().cast_const()))
     }
@@ -85,7 +85,7 @@ unsafe fn attach<T: Default + 'static>(
         check(sys::PetscContainerCreate(comm_of(object)?, &mut container))?;
         let pointer = Rc::into_raw(Rc::clone(&table)).cast_mut().cast();
         check(sys::PetscContainerSetPointer(container, pointer))?;
-        check(sys::PetscContainerSetUserDestroy(
+        check(sys::petsc_rs_container_set_destroy(
             container,
             Some(release::<T>),
         ))?;
@@ -99,7 +99,12 @@ unsafe fn attach<T: Default + 'static>(
     Ok(table)
 }
 
-unsafe extern "C" fn release<T>(pointer: *mut c_void) -> c_int {
+unsafe extern "C" fn release<T>(content: *mut c_void) -> c_int {
+    #[cfg(petsc_ge_3_23)]
+    // SAFETY: the place where PETSc keeps the pointer that `attach` has stored.
+    let pointer = unsafe { *content.cast::<*mut c_void>() };
+    #[cfg(not(petsc_ge_3_23))]
+    let pointer = content;
     // SAFETY: the pointer stored by `attach`, released once.
     let dropped = catch_unwind(|| drop(unsafe { Rc::from_raw(pointer.cast::<T>().cast_const()) }));
     match dropped {

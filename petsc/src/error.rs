@@ -171,7 +171,7 @@ pub(crate) fn fail(cause: Cause) -> c_int {
         cause: Some(cause),
         ..Report::default()
     });
-    sys::PETSC_ERR_USER as c_int
+    sys::petsc_rs_err_user
 }
 
 fn general_text(code: c_int) -> Option<String> {

@@ -7,7 +7,7 @@ use petsc_sys as sys;
 use crate::{
     error::{Error, Result, check},
     matrix::MatrixRef,
-    session::{Keep, c_string, keep, mpi_has_ended},
+    session::{Keep, c_string, has_external_package, keep, mpi_has_ended},
     vector::{VectorRef, index},
 };
 
@@ -35,12 +35,14 @@ pub enum FactorKind {
     Symmetric,
 }
 
-/// A factorisation by MUMPS of matrices that share one pattern.
+/// A factorisation of matrices that share one pattern: by MUMPS, or on one rank by PETSc itself where
+/// PETSc was built without MUMPS.
 ///
 /// The symbolic analysis is made once; [`Factorization::factor`] repeats the numeric part only.
 /// MUMPS reads its options (`-mat_mumps_icntl_…`, behind the prefix given) at construction.
 pub struct Factorization {
     raw: sys::Mat,
+    mumps: bool,
     kind: FactorKind,
     /// Unknowns that are not eliminated.
     kept: usize,
@@ -52,7 +54,7 @@ impl Factorization {
     /// Analyses the pattern of a matrix. Collective.
     ///
     /// # Errors
-    /// If MUMPS is missing or its analysis fails.
+    /// If MUMPS is missing on several ranks, or the analysis fails.
     pub fn new(matrix: &MatrixRef, kind: FactorKind) -> Result<Self> {
         let this = Self::begin(matrix, kind)?;
         this.analyse(matrix)?;
@@ -75,6 +77,9 @@ impl Factorization {
         // SAFETY: a live matrix and a C string, which PETSc copies.
         check(unsafe { sys::MatSetOptionsPrefixFactor(matrix.raw(), prefix.as_ptr()) })?;
         let mut this = Self::begin(matrix, kind)?;
+        if !this.mumps {
+            return Err(without_mumps());
+        }
         this.kept = kept.len();
         let mut set = ptr::null_mut();
         // SAFETY: a live factor; the index set copies the array, is referred to by nobody after the call
@@ -99,14 +104,20 @@ impl Factorization {
     }
 
     fn begin(matrix: &MatrixRef, kind: FactorKind) -> Result<Self> {
+        let mumps = has_external_package("mumps")?;
         let mut this = Factorization {
             raw: ptr::null_mut(),
+            mumps,
             kind,
             kept: 0,
             status: Cell::new(None),
             _keep: keep()?,
         };
-        let package = sys::MATSOLVERMUMPS.as_ptr();
+        let package = if mumps {
+            sys::MATSOLVERMUMPS.as_ptr()
+        } else {
+            sys::MATSOLVERPETSC.as_ptr()
+        };
         let petsc_kind = match kind {
             FactorKind::General => sys::MAT_FACTOR_LU,
             FactorKind::Symmetric => sys::MAT_FACTOR_CHOLESKY,
@@ -114,24 +125,34 @@ impl Factorization {
         // SAFETY: a live matrix; PETSc writes the new object, which `this` owns.
         check(unsafe { sys::MatGetFactor(matrix.raw(), package, petsc_kind, &mut this.raw) })?;
         if this.raw.is_null() {
-            return Err(Error::usage("PETSc was built without MUMPS"));
+            return Err(without_mumps());
         }
         Ok(this)
     }
 
     fn analyse(&self, matrix: &MatrixRef) -> Result<()> {
-        let (raw, none, defaults) = (matrix.raw(), ptr::null_mut(), ptr::null());
-        // SAFETY: live objects; null orderings leave the ordering to MUMPS, a null info means defaults.
-        check(unsafe {
-            match self.kind {
+        let (raw, defaults) = (matrix.raw(), ptr::null());
+        let (mut rows, mut columns) = (ptr::null_mut(), ptr::null_mut());
+        if !self.mumps {
+            let kind = sys::MATORDERINGND.as_ptr();
+            // SAFETY: a live matrix; PETSc writes two new index sets, which are destroyed below.
+            check(unsafe { sys::MatGetOrdering(raw, kind, &mut rows, &mut columns) })?;
+        }
+        // SAFETY: live objects; null orderings leave the ordering to MUMPS, a null info means defaults; the
+        // factor counts its references to the index sets, of which null ones are ignored.
+        unsafe {
+            let analysed = check(match self.kind {
                 FactorKind::General => {
-                    sys::MatLUFactorSymbolic(self.raw, raw, none, none, defaults)
+                    sys::MatLUFactorSymbolic(self.raw, raw, rows, columns, defaults)
                 }
                 FactorKind::Symmetric => {
-                    sys::MatCholeskyFactorSymbolic(self.raw, raw, none, defaults)
+                    sys::MatCholeskyFactorSymbolic(self.raw, raw, rows, defaults)
                 }
-            }
-        })
+            });
+            check(sys::ISDestroy(&mut rows))?;
+            check(sys::ISDestroy(&mut columns))?;
+            analysed
+        }
     }
 
     /// Factorises a matrix of the pattern given at construction. Collective.
@@ -204,20 +225,10 @@ impl Factorization {
         // SAFETY: live objects; PETSc checks the layouts.
         check(unsafe { sys::MatSolve(self.raw, b.raw(), x.raw()) })
     }
+}
 
-    /// MUMPS's global information `INFOG(i)`, i from 1: for example 9 for the size of the factors.
-    ///
-    /// # Errors
-    /// If PETSc fails.
-    pub fn mumps_infog(&self, i: i32) -> Result<i32> {
-        if !(1..=80).contains(&i) {
-            return Err(Error::usage("INFOG has the indices 1 to 80"));
-        }
-        let mut value = 0;
-        // SAFETY: a live MUMPS factor, an index in range, one integer to write.
-        check(unsafe { sys::MatMumpsGetInfog(self.raw, i, &mut value) })?;
-        Ok(value)
-    }
+fn without_mumps() -> Error {
+    Error::usage("PETSc was built without MUMPS, which this needs")
 }
 
 impl Drop for Factorization {

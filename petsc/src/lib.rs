@@ -1,8 +1,33 @@
-//! A safe wrapper of the parts of PETSc 3.18 that a contact solver needs.
+//! A safe wrapper of the parts of PETSc (3.18 to 3.26) that a contact solver needs.
 //!
 //! In: communicators of rsmpi, plain slices, closures. Out: vectors, matrices, linear, nonlinear and
 //! time-step solvers whose failures are [`Error`]s in Rust. Never: `unsafe` for the user, printing,
 //! or an opinion about mechanics.
+//!
+//! The PETSc is chosen when this crate is built: `PETSC_DIR` and `PETSC_ARCH`, or pkg-config, see the README.
+//!
+//! # Examples
+//! Three complete programs, which take PETSc's options and run on any number of ranks:
+//! `cargo run -p petsc --example obstacle` (bounds on the unknowns), `oscillator` (TSALPHA2) and `shell_matrix`
+//! (a matrix that is a closure). The shortest one starts MPI and PETSc, and adds two vectors:
+//!
+//! ```
+//! use mpi::Threading;
+//!
+//! let Some((universe, _)) = mpi::initialize_with_threading(Threading::Funneled) else {
+//!     panic!("MPI was started before");
+//! };
+//! let arguments: Vec<String> = std::env::args().take(1).collect();
+//! let session = petsc::Session::new(&arguments)?;
+//! let mut x = petsc::Vector::new(&universe.world(), 3)?;
+//! let mut y = x.duplicate()?;
+//! x.set_all(2.0)?;
+//! y.write()?[0] = 1.0;
+//! y.axpy(0.5, &x)?; // y = y + 0.5 x
+//! assert_eq!(y.read()?[..], [2.0, 1.0, 1.0]);
+//! drop((x, y, session)); // before MPI ends
+//! # Ok::<(), petsc::Error>(())
+//! ```
 //!
 //! # Owned and borrowed objects
 //! [`Vector`], [`Matrix`], [`Ksp`], [`Snes`] and [`Ts`] own a PETSc object and dereference to
@@ -37,6 +62,7 @@ mod reason;
 mod scatter;
 mod session;
 mod shell;
+mod shell_matrix;
 mod snes;
 mod ts;
 mod vector;
@@ -51,8 +77,8 @@ pub use ksp::{Ksp, KspRef};
 pub use matrix::{Matrix, MatrixOption, MatrixRef};
 pub use reason::{KspReason, SnesReason, TsReason};
 pub use scatter::Scatter;
-pub use session::{Session, memory_bytes};
-pub use snes::{ConvergenceCheck, LineSearchInfo, Snes, SnesRef, Tolerances};
+pub use session::{BUILT_WITH, Session, has_external_package};
+pub use snes::{ConvergenceCheck, LineSearchInfo, Snes, SnesRef};
 pub use ts::{Alpha2State, AlphaParameters, ExactFinalTime, Ts, TsRef};
 pub use vector::{Vector, VectorRef};
 

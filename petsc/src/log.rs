@@ -2,7 +2,7 @@
 //!
 //! In: a name. Out: a guard; the work between its making and its drop is counted. Never: output.
 
-use std::{marker::PhantomData, ptr};
+use std::marker::PhantomData;
 
 use petsc_sys as sys;
 
@@ -37,16 +37,8 @@ impl Event {
 
     /// Counts the work until the guard is dropped. Does nothing without a `-log_…` option.
     pub fn begin(&self) -> EventGuard {
-        // SAFETY: PETSc's global function pointer, set while logging; null objects mean none.
-        // Errors of logging are of no consequence.
-        unsafe {
-            if let Some(begin) = sys::PetscLogPLB {
-                let none = ptr::null_mut();
-                if begin(self.id, 0, none, none, none, none) == 0 {
-                    sys::PetscLogPushCurrentEvent_Internal(self.id);
-                }
-            }
-        }
+        // SAFETY: a registered event. Errors of logging are of no consequence.
+        unsafe { sys::petsc_rs_event_begin(self.id) };
         EventGuard { event: *self }
     }
 }
@@ -60,14 +52,7 @@ pub struct EventGuard {
 impl Drop for EventGuard {
     fn drop(&mut self) {
         // SAFETY: as in `begin`.
-        unsafe {
-            if let Some(end) = sys::PetscLogPLE {
-                let none = ptr::null_mut();
-                if end(self.event.id, 0, none, none, none, none) == 0 {
-                    sys::PetscLogPopCurrentEvent_Internal();
-                }
-            }
-        }
+        unsafe { sys::petsc_rs_event_end(self.event.id) };
     }
 }
 

@@ -201,17 +201,6 @@ impl MatrixRef {
         check(unsafe { sys::MatSetOption(self.raw(), option, value) })
     }
 
-    /// The Frobenius norm. Collective.
-    ///
-    /// # Errors
-    /// If the matrix has no values yet.
-    pub fn norm_frobenius(&self) -> Result<f64> {
-        let mut value = 0.0;
-        // SAFETY: a live matrix, one number to write.
-        check(unsafe { sys::MatNorm(self.raw(), sys::NORM_FROBENIUS, &mut value) })?;
-        Ok(value)
-    }
-
     /// The number of stored entries on all ranks. Collective.
     ///
     /// # Errors

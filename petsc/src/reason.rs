@@ -18,6 +18,7 @@ macro_rules! reasons {
         }
 
         impl $name {
+            #[allow(unreachable_patterns, reason = "PETSc 3.19 has made one value of two reasons")]
             pub(crate) fn from_raw(raw: sys::$raw) -> Self {
                 match raw {
                     $(sys::$value => Self::$variant,)*

@@ -61,7 +61,8 @@ impl Session {
     /// from option files. From here on a failing call gives an `Err` and prints nothing.
     ///
     /// # Errors
-    /// If MPI is not running, if PETSc was started before, or if PETSc rejects its options.
+    /// If MPI is not running, if PETSc was started before or is another version than the one this crate was
+    /// built with, or if PETSc rejects its options.
     pub fn new(args: &[String]) -> Result<Self> {
         Self::with_help(args, "")
     }
@@ -87,6 +88,7 @@ impl Session {
         if begun != sys::PETSC_FALSE || over != sys::PETSC_FALSE {
             return Err(Error::usage("PETSc can be started only once"));
         }
+        require_built_version()?;
         let arguments = c_arguments(args)?;
         let mut count =
             c_int::try_from(args.len()).map_err(|_| Error::usage("too many arguments"))?;
@@ -116,35 +118,44 @@ impl Session {
 
     /// PETSc's version at run time, for example `3.18.5`.
     pub fn version(&self) -> String {
-        let (mut major, mut minor, mut patch) = (0, 0, 0);
-        // SAFETY: PETSc writes one integer behind each pointer; the fourth may be null.
-        unsafe { sys::PetscGetVersionNumber(&mut major, &mut minor, &mut patch, ptr::null_mut()) };
+        let [major, minor, patch] = running_version();
         format!("{major}.{minor}.{patch}")
-    }
-
-    /// Whether PETSc was built with an external package, for example `mumps`.
-    ///
-    /// # Errors
-    /// If the name holds a NUL byte.
-    pub fn has_external_package(&self, name: &str) -> Result<bool> {
-        let name = c_string(name)?;
-        let mut found = sys::PETSC_FALSE;
-        // SAFETY: a C string, and one PetscBool to write.
-        check(unsafe { sys::PetscHasExternalPackage(name.as_ptr(), &mut found) })?;
-        Ok(found != sys::PETSC_FALSE)
     }
 }
 
-/// The memory this process holds at the moment, in bytes.
+/// Whether PETSc was built with an external package, for example `mumps`.
 ///
 /// # Errors
-/// If PETSc is not running or cannot find out.
-pub fn memory_bytes() -> Result<f64> {
+/// If PETSc is not running or the name holds a NUL byte.
+pub fn has_external_package(name: &str) -> Result<bool> {
     let _keep = keep()?;
-    let mut bytes = 0.0;
-    // SAFETY: PETSc writes one number.
-    check(unsafe { sys::PetscMemoryGetCurrentUsage(&mut bytes) })?;
-    Ok(bytes)
+    let name = c_string(name)?;
+    let mut found = sys::PETSC_FALSE;
+    // SAFETY: a C string, and one PetscBool to write.
+    check(unsafe { sys::PetscHasExternalPackage(name.as_ptr(), &mut found) })?;
+    Ok(found != sys::PETSC_FALSE)
+}
+
+/// The version of the PETSc whose headers this crate was built with, for example `3.18.5`.
+pub const BUILT_WITH: &str = env!("PETSC_RS_VERSION");
+
+fn running_version() -> [c_int; 3] {
+    let (mut major, mut minor, mut patch) = (0, 0, 0);
+    // SAFETY: may be called at any time; PETSc writes one integer behind each pointer; the fourth may be
+    // null.
+    unsafe { sys::PetscGetVersionNumber(&mut major, &mut minor, &mut patch, ptr::null_mut()) };
+    [major, minor, patch]
+}
+
+/// Between minor versions PETSc changes the sizes of its types, and this crate is built for one.
+fn require_built_version() -> Result<()> {
+    let [major, minor, _] = running_version();
+    if BUILT_WITH.starts_with(&format!("{major}.{minor}.")) {
+        return Ok(());
+    }
+    Err(Error::usage(format!(
+        "built with PETSc {BUILT_WITH}, but the library found at run time is PETSc {major}.{minor}: build again"
+    )))
 }
 
 /// A C string, or an error if the text holds a NUL byte.

@@ -1,4 +1,4 @@
-//! TSALPHA2 on u'' + u = 0: the errors of PETSc 3.18's start are cured.
+//! TSALPHA2 on u'' + u = 0: second order, starts, and a state that goes on to the last bit.
 
 mod common;
 
@@ -13,6 +13,7 @@ fn main() {
             "the_generalized_alpha_method_is_of_second_order",
             second_order,
         ),
+        ("petscs_own_start_is_right_since_3_22", own_start),
         (
             "a_restarted_step_keeps_second_order",
             restart_keeps_second_order,
@@ -73,6 +74,27 @@ fn second_order(comm: &SimpleCommunicator) {
     for radius in [1.0, 0.9, 0.5, 0.0] {
         let order = order(|steps| error(&mut oscillator(comm, radius, steps)));
         assert!((order - 2.0).abs() < 0.1, "radius {radius}: order {order}");
+    }
+}
+
+/// The reason for a start of our own, and until when it is needed.
+fn own_start(comm: &SimpleCommunicator) {
+    assert_eq!(Ts::OWN_START_IS_OF_FIRST_ORDER, common::minor() < 22);
+    let expected = if Ts::OWN_START_IS_OF_FIRST_ORDER {
+        1.0
+    } else {
+        2.0
+    };
+    for radius in [0.9, 0.5, 0.0] {
+        let order = order(|steps| {
+            let mut ts = oscillator(comm, radius, steps);
+            ts.alpha2_set_own_start(true).unwrap();
+            error(&mut ts)
+        });
+        assert!(
+            (order - expected).abs() < 0.2,
+            "radius {radius}: order {order}"
+        );
     }
 }
 

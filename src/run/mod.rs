@@ -43,7 +43,7 @@ use crate::case::Case;
 use crate::system::{History, Problem, System};
 use ledger::Spent;
 use outcome::why;
-use setup::{blas, defaults, unread};
+use setup::{blas, defaults, linear, unread};
 use simulation::Simulation;
 use step_size::landmarks;
 use stop_watch::StopWatch;
@@ -77,6 +77,7 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     };
     let mut recorder = Recorder::new(case, &system, resumed.as_ref())?;
     recorder.show(&blas::report(comm));
+    recorder.show(&linear::report(comm)?);
     let simulation = Rc::new(Simulation::new(
         case, system, history, recorder, landmarks, stop_watch, spent,
     )?);

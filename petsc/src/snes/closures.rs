@@ -38,6 +38,8 @@ pub(crate) struct SnesTable {
     /// How many bounds this rank has, if any are set.
     pub(super) bounds_size: Cell<Option<usize>>,
     pub(crate) running: Cell<bool>,
+    /// Whether the last residual evaluation has left the domain; cleared by who wants to know.
+    pub(super) outside_domain: Cell<bool>,
     /// What every solve has to answer at once while a state is put into the time integration.
     pub(crate) placed: RefCell<Option<Vector>>,
     pub(crate) shell_setup: Slot<dyn Fn(&SnesRef, &MatrixRef) -> Evaluation>,

@@ -60,7 +60,7 @@ impl SnesRef {
         unsafe {
             check(sys::SNESGetLineSearch(self.raw(), &mut search))?;
             check(sys::SNESLineSearchSetType(search, shell))?;
-            check(sys::SNESLineSearchShellSetUserFunc(
+            check(sys::petsc_rs_line_search_set_apply(
                 search,
                 Some(on_search),
                 ptr::null_mut(),
@@ -98,8 +98,8 @@ struct Step {
     y: sys::Vec,
     w: sys::Vec,
     residual_norm: f64,
-    project: sys::SNESLineSearchVIProjectFunc,
-    bounded_norm: sys::SNESLineSearchVINormFunc,
+    project: sys::petsc_rs_project,
+    bounded_norm: sys::petsc_rs_norm,
 }
 
 impl Step {
@@ -139,7 +139,7 @@ impl Step {
                 &mut y_norm,
             ))?;
             let (project, norm) = (&mut this.project, &mut this.bounded_norm);
-            check(sys::SNESLineSearchGetVIFunctions(search, project, norm))?;
+            check(sys::petsc_rs_line_search_get_vi(search, project, norm))?;
             check(sys::SNESLineSearchPreCheck(
                 search,
                 this.x,
@@ -206,21 +206,19 @@ impl Step {
 
     /// The residual norm at the damped step, or why there is none.
     fn attempt(&self, damping: f64) -> Result<Result<f64, sys::SNESLineSearchReason>> {
-        let mut domain_error = sys::PETSC_FALSE;
         let mut norm = 0.0;
-        // SAFETY: live objects of this line search. The residual's evaluation clears the domain flag
-        // first; closures make it the same on all ranks.
+        // SAFETY: PETSc's live solver.
+        let table = unsafe { snes_table(self.snes) }?;
+        table.outside_domain.set(false);
+        // SAFETY: live objects of this line search.
         unsafe {
             check(sys::VecWAXPY(self.w, -damping, self.y, self.x))?;
             if let Some(project) = self.project {
                 check(project(self.snes, self.w))?;
             }
             check(sys::SNESComputeFunction(self.snes, self.w, self.f))?;
-            check(sys::SNESGetFunctionDomainError(
-                self.snes,
-                &mut domain_error,
-            ))?;
-            if domain_error != sys::PETSC_FALSE {
+            // Closures make it the same on all ranks. PETSc's own flag cannot be read since 3.25.
+            if table.outside_domain.get() {
                 return Ok(Err(sys::SNES_LINESEARCH_FAILED_DOMAIN));
             }
             // The norm of all unknowns, because the one with bounds overlooks a NaN on a bound.

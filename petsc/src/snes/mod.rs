@@ -6,7 +6,6 @@
 mod bounds;
 mod closures;
 mod line_search;
-mod tolerances;
 mod trampolines;
 
 use std::ptr;
@@ -25,7 +24,6 @@ use crate::{
 pub use closures::ConvergenceCheck;
 pub(crate) use closures::snes_table;
 pub use line_search::LineSearchInfo;
-pub use tolerances::Tolerances;
 pub(crate) use trampolines::{assemble_operator, finish_residual};
 
 petsc_object! {
@@ -202,19 +200,6 @@ impl SnesRef {
         }
     }
 
-    /// The last Newton step (before damping), which is subtracted from the iterate.
-    ///
-    /// # Errors
-    /// If there is none yet.
-    pub fn solution_update(&self) -> Result<&VectorRef> {
-        let mut step = ptr::null_mut();
-        // SAFETY: a live solver, as for `solution`.
-        unsafe {
-            check(sys::SNESGetSolutionUpdate(self.raw(), &mut step))?;
-            VectorRef::from_raw(step)
-        }
-    }
-
     /// The tangent matrix: inside a solver with bounds still the one of all unknowns.
     ///
     /// # Errors
@@ -266,28 +251,11 @@ impl SnesRef {
         self.ksp()?.converged_reason()
     }
 
-    /// Declares the current residual evaluation a failure of the domain. Inside a residual closure,
-    /// return [`Failure::Domain`](crate::Failure::Domain) instead. Collective.
-    ///
-    /// # Errors
-    /// If PETSc fails.
-    pub fn set_function_domain_error(&mut self) -> Result<()> {
+    /// Declares the residual evaluation at work a failure of the domain, on all ranks.
+    pub(crate) fn set_function_domain_error(&mut self) -> Result<()> {
+        self.table()?.outside_domain.set(true);
         // SAFETY: a live solver.
         check(unsafe { sys::SNESSetFunctionDomainError(self.raw()) })
-    }
-
-    /// Makes the solver take at least one iteration even if the start is good enough.
-    ///
-    /// # Errors
-    /// If PETSc fails.
-    pub fn set_force_iteration(&mut self, force: bool) -> Result<()> {
-        let force = if force {
-            sys::PETSC_TRUE
-        } else {
-            sys::PETSC_FALSE
-        };
-        // SAFETY: a live solver.
-        check(unsafe { sys::SNESSetForceIteration(self.raw(), force) })
     }
 
     /// The layout all vectors of this solver need: PETSc does not always check it.

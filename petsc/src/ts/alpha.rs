@@ -20,7 +20,7 @@ pub struct AlphaParameters {
 
 impl AlphaParameters {
     /// Backward-Euler-like parameters that make no use of the acceleration at the start, which
-    /// PETSc 3.18 gets wrong.
+    /// PETSc gets wrong before 3.22.
     pub const START: Self = AlphaParameters {
         alpha_m: 1.0,
         alpha_f: 1.0,
@@ -79,6 +79,17 @@ impl TsRef {
         })
     }
 
+    /// Leaves the start to PETSc: it begins with an acceleration from two half steps, which is right since
+    /// 3.22 ([`Ts::OWN_START_IS_OF_FIRST_ORDER`](super::Ts::OWN_START_IS_OF_FIRST_ORDER)), and which
+    /// [`Alpha2State`](super::Alpha2State) cannot follow.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn alpha2_set_own_start(&mut self, own: bool) -> Result<()> {
+        self.table()?.own_start.set(own);
+        Ok(())
+    }
+
     /// Tells the method that the solution has jumped: the next step is a start. For the hooks before
     /// and after a step.
     ///
@@ -107,7 +118,7 @@ impl TsRef {
             return Ok(());
         }
         table.start_step.set(Some(step));
-        if self.method()?.as_deref() == Some("alpha2") {
+        if self.method()?.as_deref() == Some("alpha2") && !table.own_start.get() {
             table
                 .params_after_start
                 .set(Some(self.alpha2_get_params()?));

@@ -17,6 +17,23 @@ type Jacobian2 = dyn Fn(f64, &VectorRef, &VectorRef, &VectorRef, f64, f64, &mut 
 type Residual = dyn Fn(f64, &VectorRef, &VectorRef, &mut VectorRef) -> Evaluation;
 type Jacobian = dyn Fn(f64, &VectorRef, &VectorRef, f64, &mut MatrixRef) -> Done;
 
+/// The problem that was set, and with it the methods that can solve it.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Problem {
+    SecondOrder,
+    Implicit,
+}
+
+impl Problem {
+    /// Methods that call the closures this problem has; another one calls what was never set.
+    pub(super) fn methods(self) -> &'static [&'static str] {
+        match self {
+            Problem::SecondOrder => &["alpha2"],
+            Problem::Implicit => &["beuler", "cn", "theta", "bdf", "alpha"],
+        }
+    }
+}
+
 /// Everything Rust keeps for one time integration.
 #[derive(Default)]
 #[allow(
@@ -34,11 +51,14 @@ pub(super) struct TsTable {
     pub(super) stage_check: Slot<dyn Fn(&mut TsRef, f64, &VectorRef) -> Evaluation>,
     pub(super) post_step: Slot<dyn Fn(&mut TsRef) -> Done>,
     pub(super) monitor: Slot<dyn Fn(&TsRef, i32, f64, &VectorRef) -> Done>,
+    pub(super) problem: Cell<Option<Problem>>,
     pub(super) running: Cell<bool>,
     /// Whether a state is being put into the method: its closures are not called then.
     pub(super) placing: Cell<bool>,
     /// Whether the method has seen the past of the present solution; if not, the next step is a start.
     pub(super) has_history: Cell<bool>,
+    /// Whether PETSc makes the start by itself.
+    pub(super) own_start: Cell<bool>,
     /// The number of the last step that was a start.
     pub(super) start_step: Cell<Option<i32>>,
     /// The caller's parameters, while those for the start are in use.
@@ -80,6 +100,7 @@ impl TsRef {
         let table = self.table()?;
         table.residual2.set(Rc::new(residual));
         table.jacobian2.set(Rc::new(jacobian));
+        table.problem.set(Some(Problem::SecondOrder));
         let f = template.duplicate()?;
         let (ts, m, none) = (self.raw(), matrix.raw(), ptr::null_mut());
         // SAFETY: live objects; PETSc counts its references; the functions find their closures by
@@ -121,6 +142,7 @@ impl TsRef {
         let table = self.table()?;
         table.residual.set(Rc::new(residual));
         table.jacobian.set(Rc::new(jacobian));
+        table.problem.set(Some(Problem::Implicit));
         let f = template.duplicate()?;
         let (ts, m, none) = (self.raw(), matrix.raw(), ptr::null_mut());
         // SAFETY: as in `set_second_order`.

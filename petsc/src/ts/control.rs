@@ -8,7 +8,6 @@ use super::TsRef;
 use crate::{
     error::{Error, Result, check, text_of},
     handle::{plain_getters, plain_setters},
-    session::c_string,
 };
 
 /// What happens when a step would go beyond the final time.
@@ -100,31 +99,6 @@ impl TsRef {
         Ok(())
     }
 
-    /// Makes a failed step an error instead of a reason.
-    ///
-    /// # Errors
-    /// If PETSc fails.
-    pub fn set_error_if_step_fails(&mut self, error: bool) -> Result<()> {
-        let error = if error {
-            sys::PETSC_TRUE
-        } else {
-            sys::PETSC_FALSE
-        };
-        // SAFETY: a live object.
-        check(unsafe { sys::TSSetErrorIfStepFails(self.raw(), error) })
-    }
-
-    /// Chooses how PETSc adapts the step: `none` or `basic`. With `none` a step is still cut back
-    /// when the nonlinear solver fails.
-    ///
-    /// # Errors
-    /// If there is no such type.
-    pub fn set_adapt_type(&mut self, name: &str) -> Result<()> {
-        let name = c_string(name)?;
-        // SAFETY: a live object and a C string, which PETSc copies.
-        check(unsafe { sys::TSAdaptSetType(self.adapt()?, name.as_ptr()) })
-    }
-
     /// Sets the factor by which a step is cut back when the nonlinear solver fails.
     ///
     /// # Errors
@@ -132,26 +106,6 @@ impl TsRef {
     pub fn set_adapt_scale_solve_failed(&mut self, factor: f64) -> Result<()> {
         // SAFETY: a live object.
         check(unsafe { sys::TSAdaptSetScaleSolveFailed(self.adapt()?, factor) })
-    }
-
-    /// Sets the smallest and largest step of the adaptor. Cutting back does not respect them.
-    ///
-    /// # Errors
-    /// If a value is impossible.
-    pub fn set_adapt_step_limits(&mut self, smallest: f64, largest: f64) -> Result<()> {
-        // SAFETY: a live object.
-        check(unsafe { sys::TSAdaptSetStepLimits(self.adapt()?, smallest, largest) })
-    }
-
-    /// The smallest and largest step of the adaptor.
-    ///
-    /// # Errors
-    /// If PETSc fails.
-    pub fn adapt_step_limits(&self) -> Result<(f64, f64)> {
-        let (mut smallest, mut largest) = (0.0, 0.0);
-        // SAFETY: a live object, one number behind each pointer.
-        check(unsafe { sys::TSAdaptGetStepLimits(self.adapt()?, &mut smallest, &mut largest) })?;
-        Ok((smallest, largest))
     }
 
     fn adapt(&self) -> Result<sys::TSAdapt> {

@@ -3,18 +3,20 @@
 //! In: a residual and its tangent matrix in time, a start, hooks. Out: the solution at the end and the
 //! reason why it ended. Never: committed state; that is the caller's, after an accepted step.
 //!
-//! # Known failures of PETSc 3.18
-//! - `TS_LINEAR` with TSALPHA2 leaves velocity and acceleration stale without a word. This wrapper
-//!   always says `TS_NONLINEAR`.
-//! - TSALPHA2's start makes the initial acceleration twice too large (mended in PETSc 3.22), which
-//!   leaves first order for a spectral radius below 1. This wrapper takes the first step, and each
-//!   one after [`TsRef::restart_step`], with [`AlphaParameters::START`], which does not need it, and
-//!   puts the parameters back for the next step: second order again.
-//! - TSALPHA2's start makes two hidden half steps (pre- and post-stage are called for them too), and
-//!   puts the time step back when one of them fails: the reduction of the *first* step is lost, and
-//!   the same failing solve is repeated until [`TsRef::set_max_step_rejections`] ends the run. To
-//!   recover, make the first step small enough, or lower the time step and solve again after a
-//!   [`TsReason::DivergedStepRejected`] at step 0.
+//! # Known failures of PETSc, and until when
+//! - `TS_LINEAR` with TSALPHA2 leaves velocity and acceleration stale without a word (3.18 to 3.26). This
+//!   wrapper always says `TS_NONLINEAR`.
+//! - Before 3.22 TSALPHA2's start makes the initial acceleration twice too large, which leaves first order for
+//!   a spectral radius below 1. This wrapper takes the first step, and each one after
+//!   [`TsRef::restart_step`], with [`AlphaParameters::START`], which does not need that acceleration, and puts
+//!   the parameters back for the next step: second order. It does so with every version, so that all of
+//!   them compute the same; [`TsRef::alpha2_set_own_start`] leaves the start to PETSc.
+//! - TSALPHA2's start makes two hidden half steps (pre- and post-stage are called for them too). Before 3.21
+//!   it puts the time step back when one of them fails: the reduction of the *first* step is lost, and
+//!   the same failing solve is repeated until [`TsRef::set_max_step_rejections`] ends the run
+//!   ([`Ts::START_FORGETS_CUT_BACK`]). To recover, make the first step small enough, or lower the time step
+//!   and solve again after a [`TsReason::DivergedStepRejected`] at step 0.
+//! - Since 3.21 a residual outside its domain is not counted by [`TsRef::snes_failures`].
 //! - The first failed nonlinear solve ends the run unless [`TsRef::set_max_snes_failures`] is -1.
 //! - The default adaptor never makes the step larger again.
 //! - A step is repeated inside PETSc: the pre-*stage* hook runs for each attempt, the pre-*step* hook
@@ -52,6 +54,19 @@ petsc_object! {
 }
 
 impl Ts {
+    /// Whether TSALPHA2 repeats a refused first step at the same length for ever.
+    pub const START_FORGETS_CUT_BACK: bool = cfg!(not(petsc_ge_3_21));
+
+    /// The option that limits how often a step is refused; PETSc warns of its old name since 3.25.
+    pub const REJECTIONS_OPTION: &str = if cfg!(petsc_ge_3_25) {
+        "ts_max_step_rejections"
+    } else {
+        "ts_max_reject"
+    };
+
+    /// Whether TSALPHA2's own start makes its first acceleration twice too large.
+    pub const OWN_START_IS_OF_FIRST_ORDER: bool = cfg!(not(petsc_ge_3_22));
+
     /// A time integration without a problem. Collective.
     ///
     /// # Errors
@@ -77,9 +92,10 @@ impl Ts {
     ///
     /// # Errors
     /// If PETSc or a closure fails; an integration that gives up is a [`TsReason`] (unless
-    /// [`TsRef::set_error_if_step_fails`] or its option says otherwise).
+    /// `-ts_error_if_step_fails` says otherwise).
     pub fn solve(&mut self) -> Result<TsReason> {
         self.require_no_interpolation()?;
+        self.require_fitting_method()?;
         let (table, snes_table) = (self.table()?, self.snes()?.table()?);
         self.snes()?.check_layout(self.solution()?)?;
         self.prepare_start(&table)?;
@@ -109,12 +125,29 @@ impl TsRef {
     /// Reads the options `-ts_…`, and those of the nonlinear solver.
     ///
     /// # Errors
-    /// If an option has an impossible value, or the integration is running.
+    /// If an option has an impossible value, if `-ts_type` asks for a method that cannot solve the problem
+    /// set before, or if the integration is running.
     pub fn set_from_options(&mut self) -> Result<()> {
         self.require_idle()?;
         // SAFETY: a live object.
         check(unsafe { sys::TSSetFromOptions(self.raw()) })?;
+        self.require_fitting_method()?;
         self.snes_mut()?.restore_choices()
+    }
+
+    /// Refuses a method that would call closures the problem does not have: PETSc would call a null pointer.
+    fn require_fitting_method(&self) -> Result<()> {
+        let Some(problem) = self.table()?.problem.get() else {
+            return Ok(());
+        };
+        let method = self.method()?.unwrap_or_default();
+        if problem.methods().contains(&method.as_str()) {
+            return Ok(());
+        }
+        Err(Error::usage(format!(
+            "-ts_type {method} does not fit the problem; use {}",
+            problem.methods().join(", ")
+        )))
     }
 
     /// The nonlinear solver.

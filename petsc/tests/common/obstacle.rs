@@ -29,7 +29,7 @@ pub struct Obstacle {
 }
 
 impl Obstacle {
-    /// Reads its options with `prefix`; solves the linear systems with MUMPS.
+    /// Reads its options with `prefix`; solves the linear systems with MUMPS if it is there.
     pub fn new(comm: &SimpleCommunicator, prefix: &str) -> Self {
         let (rank, size) = (comm.rank(), comm.size());
         let local = usize::try_from(NODES * (rank + 1) / size - NODES * rank / size).unwrap();
@@ -73,8 +73,13 @@ impl Obstacle {
         snes.set_jacobian(matrix, move |_, matrix| Ok(matrix.set_values_coo(&values)?))
             .unwrap();
 
-        options::set_default(&format!("{prefix}pc_type"), "lu").unwrap();
-        options::set_default(&format!("{prefix}pc_factor_mat_solver_type"), "mumps").unwrap();
+        if petsc::has_external_package("mumps").unwrap() {
+            options::set_default(&format!("{prefix}pc_type"), "lu").unwrap();
+            options::set_default(&format!("{prefix}pc_factor_mat_solver_type"), "mumps").unwrap();
+        } else {
+            // PETSc's own factorisation works on one rank: each does the same.
+            options::set_default(&format!("{prefix}pc_type"), "redundant").unwrap();
+        }
         Obstacle { snes, u }
     }
 

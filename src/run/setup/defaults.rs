@@ -51,7 +51,7 @@ pub(in crate::run) fn set(case: &Case) -> petsc::Result<()> {
     for (name, value) in DEFAULTS {
         set_default(name, value)?;
     }
-    set_default("ts_max_reject", &MOST_REJECTIONS.to_string())?;
+    set_default(Ts::REJECTIONS_OPTION, &MOST_REJECTIONS.to_string())?;
     set_default("ts_adapt_scale_solve_failed", &CUT_BACK.to_string())?;
     set_default("snes_atol", &case.stepping.newton_tolerance.to_string())?;
     set_default(

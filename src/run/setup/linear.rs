@@ -3,6 +3,8 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
 use petsc::{CallbackError, Failure, Matrix, MatrixRef, SnesRef, VectorRef, options};
 
 use crate::case::condensed_option as condensed;
@@ -38,6 +40,33 @@ const PACKAGE_DEFAULTS: &[(&str, &str)] = &[
     (condensed!("mat_mumps_icntl_6"), "0"),
 ];
 
+/// For a PETSc without MUMPS, whose own factorisation works on one rank.
+const WITHOUT_MUMPS: &[(&str, &str)] = &[
+    (PACKAGE, "petsc"),
+    // A long thin sheet is a narrow band.
+    (condensed!("pc_factor_mat_ordering_type"), "rcm"),
+];
+/// On several ranks each factorises the whole system.
+const WITHOUT_MUMPS_ON_RANKS: &[(&str, &str)] = &[
+    (condensed!("pc_type"), "redundant"),
+    (condensed!("redundant_pc_type"), "lu"),
+    (condensed!("redundant_pc_factor_mat_ordering_type"), "rcm"),
+];
+
+/// A line about the factorisation of a PETSc without MUMPS; none otherwise.
+pub(in crate::run) fn report(comm: &SimpleCommunicator) -> petsc::Result<String> {
+    if petsc::has_external_package("mumps")? {
+        return Ok(String::new());
+    }
+    let ranks = match comm.size() {
+        1 => "",
+        _ => ", on each rank for the whole sheet, so more ranks gain little",
+    };
+    Ok(format!(
+        "warning: this PETSc was built without MUMPS: its own factorisation is used{ranks}\n"
+    ))
+}
+
 /// Options that choose a solver of the whole condensed system.
 const CHOOSE_WHOLE: &[&str] = &[condensed!("ksp_type"), condensed!("pc_type")];
 
@@ -47,6 +76,8 @@ pub(super) fn is_default(name: &str, value: Option<&str>) -> bool {
         .iter()
         .chain(&[(PACKAGE, DEFAULT_PACKAGE)])
         .chain(PACKAGE_DEFAULTS)
+        .chain(WITHOUT_MUMPS)
+        .chain(WITHOUT_MUMPS_ON_RANKS)
         .any(|(ours, default)| *ours == name && value == Some(*default))
 }
 
@@ -71,7 +102,7 @@ pub(in crate::run) struct LinearSolve {
 impl LinearSolve {
     /// Decides by the options, and sets the defaults of what is chosen. Collective.
     pub fn chosen(system: &Rc<System>) -> petsc::Result<Rc<Self>> {
-        let choice = choose()?;
+        let choice = choose(system.comm())?;
         let condensed = choice.map(|choice| CondensedSolve::new(system, choice));
         Ok(Rc::new(Self {
             entries: RefCell::new(system.jacobian_entries()),
@@ -154,11 +185,23 @@ impl LinearSolve {
 
 /// How the condensed solve is to be done by the options; none if they leave the linear systems to PETSc. Sets the
 /// defaults of what is chosen.
-fn choose() -> petsc::Result<Option<SolverChoice>> {
+fn choose(comm: &SimpleCommunicator) -> petsc::Result<Option<SolverChoice>> {
+    let mumps = petsc::has_external_package("mumps")?;
     let other_solver = options::get("snes_type")?.is_some_and(|given| given != SOLVER);
     if options::is_given(LEFT_TO_PETSC)? || other_solver {
-        set_defaults(PETSC_DEFAULTS)?;
+        let about_mumps =
+            |(name, value): &(&str, &str)| name.contains("mumps") || *value == "mumps";
+        let usable = PETSC_DEFAULTS
+            .iter()
+            .filter(|option| mumps || !about_mumps(option));
+        set_defaults(usable)?;
         return Ok(None);
+    }
+    if !mumps {
+        set_defaults(WITHOUT_MUMPS)?;
+        if comm.size() > 1 {
+            set_defaults(WITHOUT_MUMPS_ON_RANKS)?;
+        }
     }
     options::set_default(PACKAGE, DEFAULT_PACKAGE)?;
     let mut method = CondensedMethod::Whole;
@@ -177,7 +220,10 @@ fn choose() -> petsc::Result<Option<SolverChoice>> {
     }))
 }
 
-fn set_defaults(defaults: &[(&str, &str)]) -> petsc::Result<()> {
+/// Where the user has not chosen.
+fn set_defaults<'a>(
+    defaults: impl IntoIterator<Item = &'a (&'a str, &'a str)>,
+) -> petsc::Result<()> {
     for (name, value) in defaults {
         options::set_default(name, value)?;
     }

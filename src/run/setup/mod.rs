@@ -4,7 +4,7 @@
 
 pub(super) mod blas;
 pub(super) mod defaults;
-mod linear;
+pub(super) mod linear;
 pub(super) mod unread;
 
 pub(super) use linear::LinearSolve;

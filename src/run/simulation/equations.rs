@@ -106,15 +106,15 @@ impl Simulation {
     }
 
     /// Lets PETSc step to the end. Its second-order stepper begins with two half steps, and when they are
-    /// refused it repeats them at the same length (`TSAlpha_Restart` puts the old one back, PETSc 3.18):
-    /// the first step is shortened here.
+    /// refused before PETSc 3.21 it repeats them at the same length: the first step is shortened here.
     pub(super) fn solve(&self, ts: &mut Ts) -> Result<TsReason, RunError> {
         let mut dt = self.progress.borrow().control.planned();
         loop {
             let reason = ts.solve()?;
             dt *= defaults::CUT_BACK;
-            let started = self.progress.borrow().accepted.counts.steps > 0;
-            if !reason.is_diverged() || started || dt < self.settings.least_step {
+            let steps = self.progress.borrow().accepted.counts.steps;
+            let repeats = steps == 0 && Ts::START_FORGETS_CUT_BACK;
+            if !reason.is_diverged() || !repeats || dt < self.settings.least_step {
                 return Ok(reason);
             }
             ts.set_time_step(dt)?;

@@ -2,7 +2,7 @@
 //! has not.
 
 use petsc::{
-    CallbackError, ConvergenceCheck, LineSearchInfo, SnesReason, SnesRef, TsRef, VectorRef,
+    CallbackError, ConvergenceCheck, LineSearchInfo, SnesReason, SnesRef, Ts, TsRef, VectorRef,
 };
 
 use super::Simulation;
@@ -109,7 +109,8 @@ impl Simulation {
         }
         // PETSc would go on shortening the step, or repeating the first one: stop it where it must not.
         let next = dt * defaults::CUT_BACK;
-        if refused && (!started || next < self.settings.least_step) {
+        let repeats = !started && Ts::START_FORGETS_CUT_BACK;
+        if refused && (repeats || next < self.settings.least_step) {
             ts.set_max_step_rejections(0)?;
         }
         Ok(())

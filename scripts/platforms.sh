@@ -1,0 +1,130 @@
+#!/usr/bin/env bash
+# Builds, tests and runs the benchmark on several platforms, each in a bare root of its own, and prints one table.
+#   scripts/platforms.sh [here] [bookworm] [trixie] [newest]     the last three unless named
+#   here               this machine as it is
+#   bookworm, trixie   Debian 12 and 13 with their packages
+#   newest             the newest PETSc 3.26 from its source package (PyPI), without MUMPS, in the root of trixie
+# Needs root, debootstrap, a Rust toolchain and pip. From the environment:
+#   PLATFORM_ROOTS     where the roots are and stay, 4 GB each: target/platforms unless given
+#   PLATFORM_MIRROR    Debian's mirror
+# Each root takes some minutes the first time. Results: results-platforms/NAME/, and the table of docs/platforms.md.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+[ $# -gt 0 ] || set -- bookworm trixie newest
+project=$PWD
+mkdir -p "${PLATFORM_ROOTS:=target/platforms}"
+roots=$(cd "$PLATFORM_ROOTS" && pwd)
+mirror=${PLATFORM_MIRROR:-http://deb.debian.org/debian}
+petsc_release='petsc==3.26.*'
+results=$project/results-platforms
+mkdir -p "$results"
+
+# Runs a script, given on the standard input, in a root: the project at /source, the toolchain where it is outside.
+# What is mounted is seen by this command alone, and goes with it.
+inside() {
+    local root=$roots/$1
+    shift
+    if [ "$root" = "$roots/here" ]; then
+        env PROJECT="$project" "$@" bash -euo pipefail -s
+        return
+    fi
+    mkdir -p "$root/source" "$root/root/.cargo" "$root/root/.rustup"
+    unshare --mount bash -c '
+        set -e
+        root=$1 project=$2
+        shift 2
+        for place in proc sys dev; do mount --rbind "/$place" "$root/$place"; done
+        mount --bind "${CARGO_HOME:-$HOME/.cargo}" "$root/root/.cargo"
+        mount --bind "${RUSTUP_HOME:-$HOME/.rustup}" "$root/root/.rustup"
+        mount --bind "$project" "$root/source"
+        exec chroot "$root" env -i HOME=/root LC_ALL=C.UTF-8 \
+            PATH=/root/.cargo/bin:/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
+            RUSTUP_TOOLCHAIN="${RUSTUP_TOOLCHAIN:-stable}" SSL_CERT_FILE=/etc/ssl/certs/ca-certificates.crt \
+            CARGO_HTTP_CAINFO=/etc/ssl/certs/ca-certificates.crt PROJECT=/source "$@" bash -euo pipefail -s
+    ' inside "$root" "$project" "$@"
+}
+
+# A bare Debian with what a Rust toolchain needs, once.
+debian() {
+    local release=$1
+    [ -x "$roots/$release/usr/bin/gcc" ] ||
+        debootstrap --variant=minbase --include=ca-certificates,gcc,libc6-dev,git "$release" "$roots/$release" "$mirror"
+    # The network of this machine: resolver, certificates and settings of apt.
+    cp /etc/resolv.conf "$roots/$release/etc/resolv.conf"
+    cp /etc/ssl/certs/ca-certificates.crt "$roots/$release/etc/ssl/certs/ca-certificates.crt"
+    inside "$release" <<<'cd "$PROJECT" && bash scripts/install.sh'
+}
+
+# The newest PETSc, built without MUMPS and without Fortran, into /opt/petsc of trixie's root, once.
+newest() {
+    [ ! -e "$roots/trixie/opt/petsc/lib/libpetsc.so" ] || return 0
+    local sources=$roots/trixie/opt/src
+    mkdir -p "$sources"
+    [ -x "$roots/pip/bin/pip" ] || python3 -m venv "$roots/pip"
+    "$roots/pip/bin/pip" install --quiet setuptools wheel numpy
+    "$roots/pip/bin/pip" download --quiet --no-deps --no-build-isolation --no-binary petsc \
+        --dest "$sources" "$petsc_release"
+    inside trixie <<'END'
+DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends python3 make >/dev/null
+cd /opt/src
+tar xzf petsc-3.*.tar.gz
+cd petsc-3.*/
+export PETSC_DIR=$PWD PETSC_ARCH=newest
+python3 ./configure --prefix=/opt/petsc --with-cc=mpicc --with-cxx=0 --with-fc=0 --with-debugging=0 --with-x=0 \
+    --with-shared-libraries=1 COPTFLAGS=-O2 --with-blaslapack-lib="-llapack -lblas"
+make -j"$(nproc)" all
+make install
+END
+}
+
+# Tests of the wrapper on 1 and 2 ranks, and the benchmark on 1 and 2 ranks.
+measure() {
+    local name=$1 root=$2
+    shift 2
+    rm -rf "${results:?}/$name"
+    mkdir -p "$results/$name"
+    echo "platforms: $name"
+    [ "$name" = here ] || set -- CARGO_TARGET_DIR="/build-$name" "$@"
+    inside "$root" NAME="$name" "$@" <<'END'
+cd "$PROJECT"
+results=results-platforms/$NAME
+source scripts/environment.sh
+{
+    rustc --version
+    mpirun --version | head -n 1
+    ls /usr/lib/x86_64-linux-gnu/ | grep -E '^libdmumps-[0-9.]+\.so$' || true
+    dpkg-query -W -f='HDF5 ${Version}\n' libhdf5-openmpi-dev
+} >"$results/versions.txt"
+cargo build --release --locked
+cargo build --release --locked -p petsc --tests
+for ranks in 1 2; do
+    export CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER="mpirun -q -n $ranks"
+    cargo test --release --locked -p petsc --tests --no-fail-fast >"$results/tests-$ranks.log" 2>&1 ||
+        echo "platforms: tests on $ranks ranks failed, see $results/tests-$ranks.log"
+    mpirun -q -n "$ranks" "${CARGO_TARGET_DIR:-target}/release/ssnp155" -options_file inputs/ssnp155.opts \
+        -output_dir "$results/ranks-$ranks" >"$results/run-$ranks.log" 2>&1 ||
+        echo "platforms: the benchmark on $ranks ranks ended with code $?"
+done
+END
+}
+
+for name in "$@"; do
+    case $name in
+    here) measure here here ;;
+    bookworm | trixie)
+        debian "$name"
+        measure "$name" "$name"
+        ;;
+    newest)
+        debian trixie
+        newest
+        measure newest trixie PETSC_DIR=/opt/petsc
+        ;;
+    *)
+        echo "platforms: no platform is called $name; there are here, bookworm, trixie and newest" >&2
+        exit 2
+        ;;
+    esac
+done
+python3 scripts/platforms.py "$results" "$@"
