@@ -65,7 +65,14 @@ fn integral(value: impl Fn(f64) -> f64, end: f64) -> f64 {
 #[test]
 fn the_words_of_the_laws_are_these() {
     let names: Vec<&str> = LAWS.iter().map(|law| law.name).collect();
-    for name in ["table", "hollomon", "hollomon_total", "swift", "voce"] {
+    for name in [
+        "table",
+        "hollomon",
+        "hollomon_total",
+        "swift",
+        "voce",
+        "linear",
+    ] {
         assert!(names.contains(&name), "{name}");
     }
 }
@@ -272,6 +279,56 @@ fn voce_with_a_slow_rate_is_linear_with_the_slope_q_b() {
         assert!((voce.yield_stress(p).0 - expected + rest).abs() < 1e-9);
         let step = voce.return_map(expected + THREE_G * p, 0.0, THREE_G);
         assert!((step.dp - p).abs() < 1e-8);
+    }
+}
+
+#[test]
+fn linear_is_a_table_of_two_points_and_voce_with_a_slow_rate_and_swift_with_the_exponent_one() {
+    let (sigma0, slope) = (194.0, 1800.0);
+    let linear = law("linear", &[sigma0, slope]);
+    let points = [0.0, 1.0].map(|p| {
+        let stress = sigma0 + slope * p;
+        (p + stress / YOUNG, stress)
+    });
+    let table = Hardening::from_points(&points, YOUNG).unwrap();
+    let voce = law("voce", &[sigma0, slope / 1e-10, 1e-10]);
+    let swift = law("swift", &[slope, sigma0 / slope, 1.0]);
+    for p_n in [0.0, 1e-6, 0.02, 0.5, 3.0] {
+        for q in [100.0, 195.0, 300.0, 1e4] {
+            let exact = linear.return_map(q, p_n, THREE_G);
+            for other in [&table, &voce, &swift] {
+                let step = other.return_map(q, p_n, THREE_G);
+                assert!(
+                    (step.dp - exact.dp).abs() < 1e-8 * exact.dp + 1e-12,
+                    "{other:?}: {step:?}"
+                );
+                assert!(
+                    (step.yield_stress - exact.yield_stress).abs() < 1e-5,
+                    "{other:?}"
+                );
+                assert!((step.slope - exact.slope).abs() < 1e-4, "{other:?}");
+            }
+        }
+        let works = [&table, &voce, &swift].map(|other| other.plastic_work(p_n));
+        for work in works {
+            assert!(
+                (work - linear.plastic_work(p_n)).abs() < 1e-5 * (1.0 + work),
+                "{works:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn not_a_number_in_is_not_a_number_out_of_any_law() {
+    for (name, law) in all() {
+        assert!(law.return_map(f64::NAN, 0.1, THREE_G).dp.is_nan(), "{name}");
+        assert!(
+            law.return_map(300.0, f64::NAN, THREE_G).dp.is_nan(),
+            "{name}"
+        );
+        assert!(law.yield_stress(f64::NAN).0.is_nan(), "{name}");
+        assert!(law.plastic_work(f64::NAN).is_nan(), "{name}");
     }
 }
 

@@ -117,3 +117,50 @@ impl Friction {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FRICTION: Friction = Friction {
+        coefficient: 0.2,
+        compliance: 100.0,
+    };
+
+    /// Traction and state at a multiplier after this slip from rest, the gap at its bound.
+    fn after(friction: Option<Friction>, multiplier: f64, slip: f64) -> (f64, ContactState) {
+        let traction = Traction::of(friction, multiplier, slip, &FrictionState::default());
+        (traction.value, traction.state_at(0.0))
+    }
+
+    #[test]
+    fn the_law_says_what_the_point_does() {
+        let with = Some(FRICTION);
+        assert_eq!(after(None, 1e-4, 3.0), (0.0, ContactState::Stick));
+        assert_eq!(after(None, 0.0, 3.0), (0.0, ContactState::Open));
+        assert_eq!(after(with, -1e-4, 3.0), (0.0, ContactState::Open));
+        assert_eq!(after(with, 1e-4, 1e-3), (-1e-5, ContactState::Stick));
+        // The sheet moves along increasing arc length, and friction holds it back.
+        assert_eq!(after(with, 1e-4, 1.0), (-2e-5, ContactState::SlipForward));
+        assert_eq!(after(with, 1e-4, -1.0), (2e-5, ContactState::SlipBackward));
+        // Off its bound a point is open whatever its multiplier.
+        let slipping = Traction::of(with, 1e-4, 1.0, &FrictionState::default());
+        assert_eq!(slipping.state_at(1e-9), ContactState::Open);
+    }
+
+    #[test]
+    fn what_was_committed_says_the_same_as_the_solve() {
+        for slip in [-1.0, -1e-3, 0.0, 1e-3, 1.0] {
+            let traction = Traction::of(Some(FRICTION), 1e-4, slip, &FrictionState::default());
+            let committed = FrictionState {
+                traction: traction.value,
+                ..FrictionState::default()
+            };
+            assert_eq!(
+                FRICTION.committed_state(1e-4, &committed),
+                traction.state_at(0.0),
+                "{slip}"
+            );
+        }
+    }
+}

@@ -7,6 +7,7 @@ use std::ops::Bound;
 
 mod hollomon;
 mod hollomon_total;
+mod linear;
 mod return_map;
 mod swift;
 mod table;
@@ -150,6 +151,8 @@ registry! {
     Swift = swift,
     /// σ₀ + Q (1 - exp(-b p)).
     Voce = voce,
+    /// σ₀ + H p.
+    Linear = linear,
 }
 
 impl Hardening {

@@ -19,15 +19,16 @@ pub(super) fn iterate(
     three_g: f64,
 ) -> PlasticStep {
     let (mut yield_stress, mut slope) = law.flow_stress(p_n);
-    let mut dp = 0.0;
-    if q_trial <= yield_stress {
+    let excess = q_trial - yield_stress;
+    if excess <= 0.0 || excess.is_nan() {
         return PlasticStep {
-            dp,
+            dp: if excess.is_nan() { excess } else { 0.0 },
             yield_stress,
             slope,
         };
     }
-    let (mut low, mut high) = (0.0, (q_trial - yield_stress) / three_g);
+    let mut dp = 0.0;
+    let (mut low, mut high) = (0.0, excess / three_g);
     for iteration in 0..MOST {
         let residual = q_trial - three_g * dp - yield_stress;
         if residual.abs() <= f64::EPSILON * q_trial {

@@ -25,7 +25,7 @@ pub(super) static LAW: Declaration = Declaration {
         Constant {
             name: "voce_b",
             unit: "",
-            default: "9",
+            default: "8.25",
             range: (Bound::Excluded(0.0), Bound::Included(1e6)),
             meaning: "With -hardening voce: b, how fast it grows.",
         },
