@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs the benchmark on 1, 2, 3 and 4 ranks and compares force and angle at three strokes.
 #   scripts/compare_ranks.sh [OPTION ...]     options go to ssnp155
-# Exit code 0 if all forces agree within 1e-5 (relative) and all angles within 0.05 degrees of those of one rank.
+# Exit code 0 if all forces agree within 1e-8 (relative) and all angles within 1e-6 degrees of those of one rank.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/environment.sh
@@ -30,7 +30,7 @@ for ranks in (1, 2, 3, 4):
         force, angle = (float(mine[stroke][name]) for name in ("force_N", "angle_deg"))
         reference, reference_angle = (float(first[stroke][name]) for name in ("force_N", "angle_deg"))
         by_force, by_angle = abs(force / reference - 1), abs(angle - reference_angle)
-        agree = agree and by_force < 1e-5 and by_angle < 0.05
+        agree = agree and by_force < 1e-8 and by_angle < 1e-6
         print(f"{ranks:5} {stroke:5g} {force:14.8f} {by_force:9.1e} {angle:12.8f} {by_angle:10.1e}")
     summary = json.load(open(f"results/ranks-{ranks}/summary.json"))
     counts, timing = summary["counts"], summary["timing"]

@@ -6,7 +6,7 @@
 Well-posed is what rounding cannot change: the force at the strokes up to 20 mm, where the path is unique, and the
 imposed displacements. Beyond, the sheet slides through between punch and die, rounding decides which solve is refused,
 and with it the steps; there each run must hold its verdicts, and the differences are only shown. docs/performance.md
-tells how large they are between numbers of ranks. Exit code 0 if the runs agree within 1e-6 (relative).
+says how large they are between numbers of ranks. Exit code 0 if the runs agree within 1e-6 (relative).
 """
 import csv
 import json
@@ -37,11 +37,11 @@ def main(first, second):
 
     def compare(name, one, other, binding):
         difference = abs(one - other) / max(abs(one), abs(other), 1e-300)
-        print(f"{name:58} {one:16.9g} {other:16.9g} {difference:9.1e} {'' if binding else '(only shown)'}")
+        print(f"{name:66} {one:16.9g} {other:16.9g} {difference:9.1e} {'' if binding else '(only shown)'}")
         if binding and not difference <= LIMIT:
             mistakes.append(name)
 
-    verdicts = [{row["quantity"]: row for row in summary["verdicts"]} for summary in summaries]
+    verdicts = [{f"{row['quantity']} ({row['comparison']})": row for row in summary["verdicts"]} for summary in summaries]
     if verdicts[0].keys() != verdicts[1].keys() or not verdicts[0]:
         mistakes.append("the list of verdicts")
     for name in verdicts[0].keys() & verdicts[1].keys():

@@ -252,7 +252,11 @@ fn a_signal_ends_a_run_that_goes_on_later() {
         ended.text(),
         began.elapsed()
     );
-    assert!(ended.stdout.contains("-wall_limit is nearly used up"));
+    assert!(
+        ended
+            .stdout
+            .contains("the time that -wall_limit allows is nearly used up")
+    );
     assert_eq!(start(&stopped, 1, &[LONGER, "-restart"]).code, Some(0));
     assert_eq!(rows(&stopped), rows(&unbroken));
 }

@@ -110,7 +110,7 @@ mod tests {
             assert_eq!(values, super::values(VALUES, name).unwrap());
             let tight = |value: &&ReferenceValue| match (value.when, value.tolerance) {
                 (Instant::Travel(depth), Tolerance::Relative(share)) => {
-                    depth <= 20.0 && share <= 1e-6
+                    depth <= 20.0 && share <= 1e-8
                 }
                 _ => false,
             };

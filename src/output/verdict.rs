@@ -345,12 +345,12 @@ mod tests {
     fn the_text_is_aligned_and_counts_the_failures() {
         let text = table().text();
         let expected = "\
-compared with  quantity             computed     value  tolerance  unit  source            verdict
---------------------------------------------------------------------------------------------------
-reference      DY at A, punch side     -28.5     -28.5      0.1 %  mm    SSNP155 document  holds
-regression     DY at A, sheet side     -29.4   -29.001      ±0.05  mm    version 0.1.0     FAILS
-limit          largest penetration  3.200e-9     0.001    at most  mm    own | limit       holds
---------------------------------------------------------------------------------------------------
+compared with  quantity             computed    value  tolerance  unit  source            verdict
+-------------------------------------------------------------------------------------------------
+reference      DY at A, punch side     -28.5    -28.5      0.1 %  mm    SSNP155 document  holds
+regression     DY at A, sheet side     -29.4  -29.001      ±0.05  mm    version 0.1.0     FAILS
+limit          largest penetration  3.200e-9    0.001    at most  mm    own | limit       holds
+-------------------------------------------------------------------------------------------------
 1 of 3 FAIL
 ";
         assert_eq!(text, expected, "{text}");

@@ -7,13 +7,13 @@ use crate::element::GaussPointFailure;
 use crate::mesh::PartitionError;
 use crate::ranks::{broadcast_bytes, lowest_failing};
 
-/// The system could not be set up, or an accepted state not be evaluated. The same on every rank.
+/// The system could not be set up, or an accepted state not be evaluated.
 #[derive(Debug, thiserror::Error)]
 pub enum SystemError {
     /// METIS refused.
     #[error(transparent)]
     Partition(#[from] PartitionError),
-    /// An accepted state cannot be evaluated.
+    /// An accepted state cannot be evaluated; the same on every rank.
     #[error(transparent)]
     Element(#[from] FailedElement),
     /// PETSc failed.

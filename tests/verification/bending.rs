@@ -57,7 +57,7 @@ fn strip(world: &SimpleCommunicator) -> Result<Answer> {
         let right = nodes_where(&mesh, |x| x[0] == LENGTH);
         model.supports = left.iter().map(|&n| held(n, 0)).collect();
         model.supports.push(held(left[left.len() / 2], 1));
-        // At time t the curvature is t; the lower side is pulled.
+        // At time t the curvature is t; the lower side is in tension.
         let lever = |node: usize| 0.5 * THICKNESS - mesh.nodes[node][1];
         for &node in &right {
             model.supports.push(growing(node, 0, LENGTH * lever(node)));

@@ -62,8 +62,8 @@ fn eytelwein(world: &SimpleCommunicator) -> Result<Answer> {
         let mesh = SheetMesh::new(120.0, THICKNESS, 120, 1).mapped(|[i, y]| wrapped([place(i), y]));
         let mut strip = problem(mesh.clone(), &constants, Quadrature::Reduced);
         let ramp = Factor(vec![(0.0, 0.0), (1.0, 1.0)]);
-        let pull = |_: [f64; 2]| [0.0, -HOLD / THICKNESS];
-        strip.loads = traction(&mesh, Side::Left, pull, &ramp);
+        let tension = |_: [f64; 2]| [0.0, -HOLD / THICKNESS];
+        strip.loads = traction(&mesh, Side::Left, tension, &ramp);
         let end: Vec<usize> = side_edges(&mesh, Side::Right).concat();
         let draw = Factor(vec![(1.0, 0.0), (2.0, 0.02)]);
         strip.supports = end.iter().map(|&n| growing(n, 0, 1.0)).collect();
@@ -83,9 +83,9 @@ fn eytelwein(world: &SimpleCommunicator) -> Result<Answer> {
         let touching: Vec<_> = statics
             .contacts()?
             .into_iter()
-            .filter(|point| point.active)
+            .filter(|point| point.state.is_closed())
             .collect();
-        let sticking = touching.iter().filter(|point| !point.slips).count();
+        let sticking = touching.iter().filter(|point| !point.state.slips()).count();
         let delta = THICKNESS / (2.0 * RADIUS + THICKNESS);
         let exponent = (0..50).fold(friction, |k, _| {
             friction * (1.0 - delta) / (1.0 + delta * friction * k)

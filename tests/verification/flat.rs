@@ -15,7 +15,7 @@ pub const PRESSURE: Case = Case {
     name: "contact_patch",
     title: "Contact: patch test with uniform pressure",
     text: "A distorted elastic block with edges of different length rests on a flat tool, under a dead pressure p of 2 % of Young's modulus on its top. \
-The weights of the contact points integrate quadratic functions exactly, so every point must carry exactly p, and give by compliance · p; \
+The weights of the contact points integrate quadratic functions exactly, so every point must carry exactly p, and penetrate by compliance · p; \
 the block is strained uniformly, E/(1-ν²) ln λ = -p λ. Tolerance: the convergence of Newton's method.",
     quick: true,
     two_ranks: true,
@@ -68,7 +68,7 @@ fn pressed(world: &SimpleCommunicator) -> Result<Answer> {
         ));
         let deepest = worst(&|i| contacts[i].gap, contacts.len());
         rows.push(Row::relative(
-            format!("largest give, mm; {label}"),
+            format!("largest penetration, mm; {label}"),
             deepest,
             COMPLIANCE * pressure,
             1e-9,

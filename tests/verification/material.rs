@@ -16,7 +16,7 @@ enum Free {
     YAndZ,
 }
 
-/// A material point pulled in x.
+/// A material point stretched in x.
 struct Driver {
     material: VonMises,
     state: PointState,
@@ -50,7 +50,7 @@ impl Driver {
     }
 
     /// Moves on to the logarithmic strain `x` with the free stresses at zero; gives the stress.
-    fn pull(&mut self, x: f64) -> PlaneTensor {
+    fn stretch(&mut self, x: f64) -> PlaneTensor {
         let z = |y: f64| if self.free == Free::YAndZ { y } else { 0.0 };
         let lateral = |y: f64| self.respond(x, y, z(y)).0.yy;
         let y = bisect(-2.0, 2.0, lateral);
@@ -68,7 +68,7 @@ impl Driver {
 pub const UNIAXIAL: Case = Case {
     name: "material_uniaxial",
     title: "Material: uniaxial tension along the hardening table",
-    text: "A point is pulled to the logarithmic strains of the table, with the lateral stretches iterated until the lateral \
+    text: "A point is stretched to the logarithmic strains of the table, with the lateral stretches iterated until the lateral \
 stresses vanish. The path is proportional, so the return map is exact and the Kirchhoff stress must be the table's. \
 (The table is read as Kirchhoff stress; the true stress is smaller by the volume ratio, 0.1 to 0.3 % here.) Tolerance: rounding.",
     quick: true,
@@ -86,7 +86,7 @@ fn uniaxial(_: &SimpleCommunicator) -> Result<Answer> {
         Some((strain.parse::<f64>().ok()?, stress.parse::<f64>().ok()?))
     });
     for (index, (strain, stress)) in points.enumerate() {
-        let computed = driver.pull(strain).xx;
+        let computed = driver.stretch(strain).xx;
         if index % 4 == 1 || index == 0 {
             let quantity = format!("Kirchhoff stress at strain {strain}, MPa");
             // The table's first strain has six digits: its stress may differ in the sixth.
@@ -100,7 +100,7 @@ fn uniaxial(_: &SimpleCommunicator) -> Result<Answer> {
 pub const PLANE_STRAIN: Case = Case {
     name: "material_plane_strain",
     title: "Material: plane strain tension",
-    text: "Pulled in x, free in y, no strain in z: at first the Poisson ratio is that of the elastic material, later 1/2, so the \
+    text: "Stretched in x, free in y, no strain in z: at first the Poisson ratio is that of the elastic material, later 1/2, so the \
 stress turns in the deviatoric plane and the return map (backward Euler) is of first order. The reference integrates the \
 Prandtl-Reuss rates in logarithmic strains by a Runge-Kutta method; principal axes do not turn, so small strain equations hold \
 for any strain. 2000 and 4000 steps to a strain of 0.5, extrapolated to the limit of small steps. Tolerance: what is left of second order, and the kinks of the table.",
@@ -119,7 +119,7 @@ fn plane_strain(_: &SimpleCommunicator) -> Result<Answer> {
         let mut out = Vec::new();
         for step in 1..=steps {
             let strain = 0.5 * step as f64 / steps as f64;
-            let stress = driver.pull(strain);
+            let stress = driver.stretch(strain);
             if at.iter().any(|a| (a - strain).abs() < 1e-12) {
                 out.push([stress.xx, stress.zz, driver.plastic_strain()]);
             }
@@ -175,7 +175,9 @@ fn cyclic(_: &SimpleCommunicator) -> Result<Answer> {
     for to in [0.05, -0.05, 0.1, 0.0_f64] {
         let mut stress = 0.0;
         for step in 1..=7 {
-            stress = driver.pull(from + (to - from) * f64::from(step) / 7.0).xx;
+            stress = driver
+                .stretch(from + (to - from) * f64::from(step) / 7.0)
+                .xx;
         }
         // to = plastic strain before ± dp ± yield stress / E.
         let sign = (to - from).signum();

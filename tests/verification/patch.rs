@@ -111,24 +111,26 @@ fn displacement(world: &SimpleCommunicator) -> Result<Answer> {
 pub const TRACTION: Case = Case {
     name: "patch_traction",
     title: "Elements: patch test with prescribed tractions",
-    text: "The same elements, elastic, held as lightly as possible and pulled by a dead traction P on the right side, to a logarithmic \
+    text: "The same elements, elastic, held as lightly as possible and loaded by a dead traction P on the right side, to a logarithmic \
 strain of 0.1. Kirchhoff stress E/(1-ν²) ln λ and P = stress/λ give the stretches λ in x and λ^(-ν/(1-ν)) in y. Tolerance: the convergence of Newton's method.",
     quick: true,
     two_ranks: true,
-    run: pulled,
+    run: loaded,
 };
 
-fn pulled(world: &SimpleCommunicator) -> Result<Answer> {
+fn loaded(world: &SimpleCommunicator) -> Result<Answer> {
     const SOURCE: &str = "closed form (Hencky elasticity, Anand 1979)";
     let constants = Constants::elastic();
     let mut rows = Vec::new();
     for quadrature in [Quadrature::Reduced, Quadrature::Full] {
-        let pull = constants.plane_modulus() * 0.1 / 0.1_f64.exp();
-        let strain = bisect(0.0, 0.5, |e| constants.plane_modulus() * e / e.exp() - pull);
+        let tension = constants.plane_modulus() * 0.1 / 0.1_f64.exp();
+        let strain = bisect(0.0, 0.5, |e| {
+            constants.plane_modulus() * e / e.exp() - tension
+        });
         let mesh = distorted(4, 3);
         let factor = Factor(vec![(0.0, 0.0), (1.0, 1.0)]);
         let mut patch = problem(mesh.clone(), &constants, quadrature);
-        patch.loads = traction(&mesh, Side::Right, |_| [pull, 0.0], &factor);
+        patch.loads = traction(&mesh, Side::Right, |_| [tension, 0.0], &factor);
         let left = nodes_where(&mesh, |x| x[0] == 0.0);
         patch.supports = left.iter().map(|&n| held(n, 0)).collect();
         patch.supports.push(held(left[0], 1));

@@ -4,7 +4,7 @@ use std::error::Error;
 
 use mpi::topology::SimpleCommunicator;
 
-/// What goes wrong in a case is told, not handled.
+/// What goes wrong in a case is reported, not handled.
 pub type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
 /// A case of the suite.

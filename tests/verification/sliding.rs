@@ -76,7 +76,7 @@ fn cycle(world: &SimpleCommunicator) -> Result<Answer> {
         for point in &points {
             worst = worst.max((point.friction - exact).abs());
             let slips = exact.abs() > limit * (1.0 - 1e-9);
-            wrong += f64::from(u8::from(point.slips != slips));
+            wrong += f64::from(u8::from(point.state.slips() != slips));
         }
         if [2, 10, 11, 30, 31, 50].contains(&step) {
             let quantity = format!(
@@ -113,7 +113,7 @@ fn cycle(world: &SimpleCommunicator) -> Result<Answer> {
             SOURCE,
         ),
         Row::relative(
-            "work of friction and of the give, mJ per mm",
+            "work of friction and of the contact compliance, mJ per mm",
             statics.measures()?.contact_energy,
             work,
             1e-9,

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 use petsc::Vector;
-use ssnp155::contact::{ContactLocation, ContactRule};
+use ssnp155::contact::{ContactLocation, ContactRule, ContactState};
 use ssnp155::element::Quadrature;
 use ssnp155::mesh::SheetMesh;
 use ssnp155::ranks::gather_lists;
@@ -177,10 +177,8 @@ pub struct Touch {
     pub gap: f64,
     /// Friction traction, MPa.
     pub friction: f64,
-    /// Whether it carries a force.
-    pub active: bool,
-    /// Whether friction is at its limit.
-    pub slips: bool,
+    /// Whether it carries a force and slips.
+    pub state: ContactState,
 }
 
 /// A static solution, time by time, on one rank or several: everything asked of it is gathered, the same on every rank.
@@ -301,32 +299,31 @@ impl Statics {
 }
 
 /// Numbers a contact point is packed into for a message.
-const PACKED: usize = 7;
+const PACKED: usize = 6;
 
 fn pack(point: &ContactPointSample) -> [f64; PACKED] {
     let [x, y] = point.reference;
-    let [active, slips] =
-        [point.state.is_closed(), point.state.slips()].map(|yes| f64::from(u8::from(yes)));
-    [
-        x,
-        y,
-        point.pressure,
-        point.gap,
-        point.friction,
-        active,
-        slips,
-    ]
+    let state = f64::from(point.state.code());
+    [x, y, point.pressure, point.gap, point.friction, state]
 }
 
 fn unpack(numbers: &[f64]) -> Touch {
-    let [x, y, pressure, gap, friction, active, slips] = std::array::from_fn(|k| numbers[k]);
+    const STATES: [ContactState; 4] = [
+        ContactState::Open,
+        ContactState::Stick,
+        ContactState::SlipForward,
+        ContactState::SlipBackward,
+    ];
+    let [x, y, pressure, gap, friction, code] = std::array::from_fn(|k| numbers[k]);
+    let state = STATES
+        .into_iter()
+        .find(|state| f64::from(state.code()) == code);
     Touch {
         reference: [x, y],
         pressure,
         gap,
         friction,
-        active: active == 1.0,
-        slips: slips == 1.0,
+        state: state.expect("a state has its code"),
     }
 }
 

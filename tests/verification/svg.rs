@@ -31,6 +31,16 @@ impl Chart<'_> {
     pub fn svg(&self) -> Result<String> {
         let svg = self.drawn();
         self.check(&svg)?;
+        // A check that cannot fail is none: the picture with a dot or the line elsewhere must be refused.
+        let dot = svg.replacen(r#"<circle cx=""#, r#"<circle cx="1"#, 1);
+        let end = svg.find(LINE_ENDS).unwrap_or(0);
+        let start = svg[..end].rfind('M').unwrap_or(0);
+        let line = format!("{}M9{}", &svg[..start], &svg[start + 1..]);
+        for moved in [dot, line] {
+            if moved == svg || self.check(&moved).is_ok() {
+                return Err("the picture is not looked at".into());
+            }
+        }
         Ok(svg)
     }
 
@@ -141,7 +151,7 @@ impl Chart<'_> {
         let circles = svg.split("<circle").skip(1).take(dots - 1);
         let places = circles.map(|tag| Ok(read(attribute(tag, "cx")?, attribute(tag, "cy")?)));
         same(self.dots.0, places.collect::<Result<_>>()?, &self.dots.1)?;
-        let line = svg.split(r#"" fill="none""#).next().unwrap_or_default();
+        let line = svg.split(LINE_ENDS).next().unwrap_or_default();
         let line = line.rsplit('"').next().unwrap_or_default();
         let places = line.split(['M', 'L']).skip(1).map(|pair| {
             let (x, y) = pair.split_once(' ').ok_or("a point without y")?;
@@ -151,6 +161,9 @@ impl Chart<'_> {
         Ok(())
     }
 }
+
+/// What stands behind the points of the line, and nowhere else.
+const LINE_ENDS: &str = r#"" fill="none""#;
 
 /// An axis as its labelled ticks say: value and place of the first tick, and value per unit of the picture.
 struct Ruler {

@@ -43,7 +43,7 @@ const CANNOT_TOUCH: i32 = -1;
 
 /// Point arrays of `fields.vtkhdf`, in this order. `stress` has VTK's six components of a symmetric tensor, which
 /// ParaView shows as XX, YY, ZZ, XY, YZ, XZ; the last two are 0 in plane strain.
-pub const SHEET_ARRAYS: [ArraySpec; 7] = [
+const SHEET_ARRAYS: [ArraySpec; 7] = [
     DISPLACEMENT,
     real("stress", "MPa", 6),
     real("von_mises_stress", "MPa", 1),
@@ -54,10 +54,10 @@ pub const SHEET_ARRAYS: [ArraySpec; 7] = [
 ];
 
 /// Point arrays of `tools.vtkhdf`.
-pub const TOOL_ARRAYS: [ArraySpec; 1] = [DISPLACEMENT];
+const TOOL_ARRAYS: [ArraySpec; 1] = [DISPLACEMENT];
 
 /// Point arrays of `contact.vtkhdf`, in this order.
-pub const CONTACT_ARRAYS: [ArraySpec; 5] = [
+const CONTACT_ARRAYS: [ArraySpec; 5] = [
     DISPLACEMENT,
     CONTACT_PRESSURE,
     real("friction_traction", "MPa", 1),
@@ -86,7 +86,7 @@ impl SheetFile {
     /// Starts the file with the mesh and the owning ranks of the cells.
     ///
     /// # Errors
-    /// As [`TimeSeries::create`].
+    /// [`OutputError::Hdf5`] if the file cannot be written, the same on every rank.
     pub fn create(
         path: impl AsRef<Path>,
         comm: &impl Communicator,
@@ -119,7 +119,7 @@ impl SheetFile {
     /// Begins with the steps of an earlier file, in which row `rows[i]` of every step is node i of this rank's part.
     ///
     /// # Errors
-    /// As [`TimeSeries::replay`].
+    /// [`OutputError::Read`] if the file is another one, [`OutputError::Hdf5`] if its steps cannot be written.
     pub fn replay(&mut self, from: &Path, rows: &[usize]) -> Result<(), OutputError> {
         self.series.replay(from, rows)
     }
@@ -127,7 +127,7 @@ impl SheetFile {
     /// Adds the state at `t_ms`, one sample for each local node in the order of [`SheetPart::coordinates`].
     ///
     /// # Errors
-    /// As [`TimeSeries::append`].
+    /// [`OutputError::Mismatch`] if the values do not fit, [`OutputError::Hdf5`] if they cannot be written.
     pub fn write(&mut self, t_ms: f64, samples: &[NodeSample]) -> Result<(), OutputError> {
         let displacement = gather(samples, |s| [s.displacement[0], s.displacement[1], 0.0]);
         let stress = gather(samples, |s| {
@@ -162,7 +162,7 @@ impl ToolsFile {
     /// other ranks ignored.
     ///
     /// # Errors
-    /// As [`TimeSeries::create`].
+    /// [`OutputError::Hdf5`] if the file cannot be written, the same on every rank.
     pub fn create(
         path: impl AsRef<Path>,
         comm: &impl Communicator,
@@ -201,7 +201,7 @@ impl ToolsFile {
     /// Begins with the steps of an earlier file of the same tools.
     ///
     /// # Errors
-    /// As [`TimeSeries::replay`].
+    /// [`OutputError::Read`] if the file is another one, [`OutputError::Hdf5`] if its steps cannot be written.
     pub fn replay(&mut self, from: &Path) -> Result<(), OutputError> {
         let rows: Vec<usize> = (0..self.die_points + self.punch_points).collect();
         self.series.replay(from, &rows)
@@ -210,7 +210,7 @@ impl ToolsFile {
     /// Adds the state at `t_ms` with the punch moved down by `stroke_mm`.
     ///
     /// # Errors
-    /// As [`TimeSeries::append`].
+    /// [`OutputError::Mismatch`] if the values do not fit, [`OutputError::Hdf5`] if they cannot be written.
     pub fn write(&mut self, t_ms: f64, stroke_mm: f64) -> Result<(), OutputError> {
         let mut displacement = vec![0.0; 3 * self.die_points];
         displacement.extend([0.0, -stroke_mm, 0.0].repeat(self.punch_points));
@@ -228,7 +228,7 @@ impl ContactFile {
     /// Starts the file with the reference positions [x, y] of this rank's contact points, mm.
     ///
     /// # Errors
-    /// As [`TimeSeries::create`].
+    /// [`OutputError::Hdf5`] if the file cannot be written, the same on every rank.
     pub fn create(
         path: impl AsRef<Path>,
         comm: &impl Communicator,
@@ -249,7 +249,7 @@ impl ContactFile {
     /// Begins with the steps of an earlier file, in which row `rows[i]` of every step is point i of this rank.
     ///
     /// # Errors
-    /// As [`TimeSeries::replay`].
+    /// [`OutputError::Read`] if the file is another one, [`OutputError::Hdf5`] if its steps cannot be written.
     pub fn replay(&mut self, from: &Path, rows: &[usize]) -> Result<(), OutputError> {
         self.series.replay(from, rows)
     }
@@ -257,7 +257,7 @@ impl ContactFile {
     /// Adds the state at `t_ms`, one sample for each of this rank's points.
     ///
     /// # Errors
-    /// As [`TimeSeries::append`].
+    /// [`OutputError::Mismatch`] if the values do not fit, [`OutputError::Hdf5`] if they cannot be written.
     pub fn write(&mut self, t_ms: f64, samples: &[ContactPointSample]) -> Result<(), OutputError> {
         self.series.append(
             t_ms,

@@ -20,8 +20,4 @@ mod series;
 mod steps;
 mod types;
 
-pub use fields::{
-    CONTACT_ARRAYS, ContactFile, SHEET_ARRAYS, SheetFile, SheetPart, TOOL_ARRAYS, ToolsFile,
-};
-pub use series::TimeSeries;
-pub use types::{ArraySpec, CellType, Kind, Part, Values};
+pub use fields::{ContactFile, SheetFile, SheetPart, ToolsFile};

@@ -14,7 +14,7 @@ use super::types::{ArraySpec, Part, Values};
 use crate::output::error::{OutputError, agree};
 
 /// The file being written. Dropping it closes the file on all ranks together: do that before MPI is finalised.
-pub struct TimeSeries {
+pub(super) struct TimeSeries {
     path: PathBuf,
     comm: SimpleCommunicator,
     steps: usize,
@@ -84,11 +84,6 @@ impl TimeSeries {
             file,
             comm,
         })
-    }
-
-    /// Steps in the file so far.
-    pub fn steps(&self) -> usize {
-        self.steps
     }
 
     /// Adds one step at `t_ms` with the values of all point arrays, in the order of their specifications. When it

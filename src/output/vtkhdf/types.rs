@@ -3,7 +3,7 @@
 /// VTK's numbers for the cell types used here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
-pub enum CellType {
+pub(super) enum CellType {
     /// One point.
     Vertex = 1,
     /// A line through any number of points.
@@ -14,7 +14,7 @@ pub enum CellType {
 
 /// One rank's part of the mesh: points in mm, and cells that name them by their local index.
 #[derive(Debug, Clone)]
-pub struct Part {
+pub(super) struct Part {
     /// Points, mm.
     pub points: Vec<[f64; 3]>,
     /// The type of all cells.
@@ -53,7 +53,7 @@ impl Part {
 
 /// What kind of numbers an array holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub(super) enum Kind {
     /// Double precision.
     F64,
     /// 32-bit integers.
@@ -62,7 +62,7 @@ pub enum Kind {
 
 /// Name and shape of an array; the same on all ranks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ArraySpec {
+pub(super) struct ArraySpec {
     /// The name shown to the user.
     pub name: &'static str,
     /// Its unit, stored as an attribute; "1" if it has none.
@@ -75,7 +75,7 @@ pub struct ArraySpec {
 
 /// The values of an array on this rank: all components of the first point (or cell), then those of the second, ...
 #[derive(Debug, Clone, Copy)]
-pub enum Values<'a> {
+pub(super) enum Values<'a> {
     /// Double precision.
     F64(&'a [f64]),
     /// 32-bit integers.

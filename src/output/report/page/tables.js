@@ -27,10 +27,10 @@ function tolerance(t, unit) {
 }
 
 function verdictTable() {
-  const heads = [{ name: "Quantity" }, { name: "Computed", number: true }, { name: "Reference or limit", number: true }, { name: "Tolerance", number: true }, { name: "Unit" }, { name: "Source of the reference", class: "source" }, { name: "" }];
+  const heads = [{ name: "Compared with" }, { name: "Quantity" }, { name: "Computed", number: true }, { name: "Value", number: true }, { name: "Tolerance", number: true }, { name: "Unit" }, { name: "Source of the value", class: "source" }, { name: "" }];
   table("verdict-table", heads, summary.verdicts.map(v => {
     const good = v.verdict === "holds";
-    return { failing: !good, cells: [v.quantity, show(v.computed, 6), show(v.reference, 6), tolerance(v.tolerance, v.unit), v.unit === "1" ? "" : v.unit, v.source, mark(good)] };
+    return { failing: !good, cells: [v.comparison, v.quantity, show(v.computed, 6), show(v.reference, 6), tolerance(v.tolerance, v.unit), v.unit === "1" ? "" : v.unit, v.source, mark(good)] };
   }));
 }
 
