@@ -94,7 +94,7 @@ fn main() {
     println!("cargo::rerun-if-changed=src");
     if let Err(error) = build() {
         // One sentence instead of the text of a panic.
-        println!("cargo::error=petsc-sys: {error}");
+        println!("cargo::error={error}");
         std::process::exit(1);
     }
 }

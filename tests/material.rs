@@ -233,6 +233,24 @@ fn all_finite(response: &Response) -> bool {
 }
 
 #[test]
+fn no_law_allocates() {
+    for (name, material) in materials() {
+        let [_, state] = states(&material);
+        let f = deformation(0.2, &mut Noise::new(9));
+        let counted = allocation_counter::measure(|| {
+            let response = material.respond(&f, &state).unwrap();
+            std::hint::black_box((
+                response.tangent(),
+                response.state(),
+                response.elastic_energy(),
+            ));
+            std::hint::black_box(material.hardening().plastic_work(0.1));
+        });
+        assert_eq!(counted.count_total, 0, "{name}");
+    }
+}
+
+#[test]
 fn a_determinant_that_is_tiny_zero_negative_or_none_is_refused_and_says_which() {
     for (name, material) in materials() {
         let respond = |f: Matrix| material.respond(&f, &PointState::VIRGIN);

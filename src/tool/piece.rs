@@ -211,7 +211,7 @@ pub(super) struct End {
 impl End {
     /// Distance to the end point.
     ///
-    /// Where an end point is the closest point of the profile, the sum of the normals of the pieces that meet there tells the
+    /// Where an end point is the closest point of the profile, the sum of the normals of the pieces that meet there decides the
     /// side, at a corner as sharp as any (the pseudonormal of Bærentzen and Aanæs 2005, IEEE Trans. Vis. Comput. Graph. 11,
     /// 243-253, with the equal angles of the plane); the normal of one piece alone does not.
     #[inline]

@@ -27,7 +27,7 @@ pub trait Law {
     fn plastic_work(&self, p: f64) -> f64;
 
     /// Radial return, see [`Hardening::return_map`]. The default solves for any law to rounding; a law with a closed
-    /// form gives that instead.
+    /// form has that instead.
     fn return_map(&self, q_trial: f64, p_n: f64, three_g: f64) -> PlasticStep {
         return_map::iterate(self, q_trial, p_n, three_g)
     }

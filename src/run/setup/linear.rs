@@ -40,8 +40,6 @@ const PACKAGE_DEFAULTS: &[(&str, &str)] = &[
     (condensed!("mat_mumps_icntl_6"), "0"),
 ];
 
-/// Options that choose a solver of the whole condensed system.
-const CHOOSE_WHOLE: &[&str] = &[condensed!("ksp_type"), condensed!("pc_type")];
 /// For a PETSc without MUMPS, whose own factorisation works on one rank.
 const WITHOUT_MUMPS: &[(&str, &str)] = &[
     (PACKAGE, "petsc"),
@@ -69,16 +67,8 @@ pub(in crate::run) fn report(comm: &SimpleCommunicator) -> petsc::Result<String>
     ))
 }
 
-/// Puts the choice for a PETSc without MUMPS into the option database, where the user has not chosen.
-fn do_without_mumps(comm: &SimpleCommunicator) -> petsc::Result<()> {
-    let on_ranks = if comm.size() == 1 {
-        &[]
-    } else {
-        WITHOUT_MUMPS_ON_RANKS
-    };
-    set_defaults(WITHOUT_MUMPS)?;
-    set_defaults(on_ranks)
-}
+/// Options that choose a solver of the whole condensed system.
+const CHOOSE_WHOLE: &[&str] = &[condensed!("ksp_type"), condensed!("pc_type")];
 
 /// Whether the option has the value that this program gave it for the linear solves.
 pub(super) fn is_default(name: &str, value: Option<&str>) -> bool {
@@ -199,15 +189,19 @@ fn choose(comm: &SimpleCommunicator) -> petsc::Result<Option<SolverChoice>> {
     let mumps = petsc::has_external_package("mumps")?;
     let other_solver = options::get("snes_type")?.is_some_and(|given| given != SOLVER);
     if options::is_given(LEFT_TO_PETSC)? || other_solver {
-        for (name, value) in PETSC_DEFAULTS {
-            if mumps || !(name.contains("mumps") || *value == "mumps") {
-                options::set_default(name, value)?;
-            }
-        }
+        let about_mumps =
+            |(name, value): &(&str, &str)| name.contains("mumps") || *value == "mumps";
+        let usable = PETSC_DEFAULTS
+            .iter()
+            .filter(|option| mumps || !about_mumps(option));
+        set_defaults(usable)?;
         return Ok(None);
     }
     if !mumps {
-        do_without_mumps(comm)?;
+        set_defaults(WITHOUT_MUMPS)?;
+        if comm.size() > 1 {
+            set_defaults(WITHOUT_MUMPS_ON_RANKS)?;
+        }
     }
     options::set_default(PACKAGE, DEFAULT_PACKAGE)?;
     let mut method = CondensedMethod::Whole;
@@ -226,7 +220,10 @@ fn choose(comm: &SimpleCommunicator) -> petsc::Result<Option<SolverChoice>> {
     }))
 }
 
-fn set_defaults(defaults: &[(&str, &str)]) -> petsc::Result<()> {
+/// Where the user has not chosen.
+fn set_defaults<'a>(
+    defaults: impl IntoIterator<Item = &'a (&'a str, &'a str)>,
+) -> petsc::Result<()> {
     for (name, value) in defaults {
         options::set_default(name, value)?;
     }

@@ -112,8 +112,8 @@ impl Simulation {
         loop {
             let reason = ts.solve()?;
             dt *= defaults::CUT_BACK;
-            let started = self.progress.borrow().accepted.counts.steps > 0;
-            let repeats = !started && Ts::START_FORGETS_CUT_BACK;
+            let steps = self.progress.borrow().accepted.counts.steps;
+            let repeats = steps == 0 && Ts::START_FORGETS_CUT_BACK;
             if !reason.is_diverged() || !repeats || dt < self.settings.least_step {
                 return Ok(reason);
             }
