@@ -41,7 +41,7 @@ def main(first, second):
         if binding and not difference <= LIMIT:
             mistakes.append(name)
 
-    verdicts = [{f"{row['quantity']} ({row['comparison']})": row for row in summary["verdicts"]} for summary in summaries]
+    verdicts = [{f"{row['quantity']} ({row['comparison']}: {row['source']})": row for row in summary["verdicts"]} for summary in summaries]
     if verdicts[0].keys() != verdicts[1].keys() or not verdicts[0]:
         mistakes.append("the list of verdicts")
     for name in verdicts[0].keys() & verdicts[1].keys():

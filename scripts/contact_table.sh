@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes the tables of docs/contact.md: where contact is looked for, and how stiff it is.
 #   scripts/contact_table.sh [FOLDER]          results go to FOLDER (default results-contact)
-# One rank, one run after the other: about 15 minutes of processor time, 5 of them with FINE=1 for the 340 x 10 mesh. A run
+# One rank, one run after the other: about 3 minutes of processor time, and some 2 with FINE=1 for the 340 x 10 mesh. A run
 # that is already in FOLDER is not done again. The program is target/release/ssnp155, or $SSNP155.
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -13,8 +13,8 @@ const HEAD: &str = "\
 What the program computes beside closed solutions and independent integrations: first the material without a mesh, then
 elements, contact, and motion in time. `scripts/verify.sh` runs all cases and writes this page; the cases marked *quick* run in
 `cargo test --release`. The cases marked *also on two ranks* are solved a second time by two ranks, where every row must hold, too,
-and every value be that of one rank, to 1e-7 of its size (errors given in absolute terms: to 1e-9 or 1e-5 of their tolerance). Units are mm, N, MPa, g and ms.
-The cases are in [tests/verification](../tests/verification).
+and every value be that of one rank, to 1e-7 of its size (errors given in absolute terms: to 1e-9 or 1e-5 of their tolerance).
+Units are mm, N, MPa, g and ms. The cases are in [tests/verification](../tests/verification).
 
 An error is relative to the reference unless it is marked with its absolute unit by *abs*. A tolerance says what the method
 should reach (rounding, the order of the scheme, or the terms the reference neglects), and the text of a case says which.
