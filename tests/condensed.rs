@@ -30,6 +30,7 @@ fn main() -> ExitCode {
             .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
             .env("OMPI_MCA_hwloc_base_binding_policy", "none")
             .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
+            .env("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe")
             .env("OMPI_MCA_btl_vader_single_copy_mechanism", "none")
             .env("OPENBLAS_NUM_THREADS", "1")
             .status()

@@ -36,7 +36,7 @@ pub fn command(ranks: usize, words: &[&str]) -> Command {
         Command::new(program)
     } else {
         let mut command = Command::new("mpirun");
-        command.args(["-q", "--oversubscribe", "-n", &ranks.to_string(), program]);
+        command.args(["--oversubscribe", "-n", &ranks.to_string(), program]);
         command
     };
     command.args(words);
@@ -44,12 +44,15 @@ pub fn command(ranks: usize, words: &[&str]) -> Command {
     command
 }
 
-/// Several ranks on few cores, also for root.
+/// Several ranks on few cores, also for root, without Open MPI's words about a rank that fails; Open MPI 5 has names of
+/// its own for some of it.
 fn for_few_cores(command: &mut Command) -> &mut Command {
     command
         .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
         .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
+        .env("OMPI_MCA_orte_execute_quiet", "1")
         .env("OMPI_MCA_hwloc_base_binding_policy", "none")
+        .env("PRTE_MCA_hwloc_default_binding_policy", "none")
         .env("OMPI_MCA_btl_vader_single_copy_mechanism", "none")
         // More ranks than cores must not wait in a busy loop for those that have none.
         .env("OMPI_MCA_mpi_yield_when_idle", "1")
@@ -77,7 +80,7 @@ pub fn run_in(
         command.arg(seconds.to_string());
     } else {
         // mpirun's own limit ends the ranks; the outer one is for an mpirun that hangs itself.
-        command.args([&(seconds + 10).to_string(), "mpirun", "-q", "--timeout"]);
+        command.args([&(seconds + 10).to_string(), "mpirun", "--timeout"]);
         command.args([
             &seconds.to_string(),
             "--oversubscribe",
