@@ -11,7 +11,7 @@ program=${CARGO_TARGET_DIR:-target}/release/ssnp155
 for ranks in 1 2 3 4; do
     echo "compare: $ranks rank(s)"
     mkdir -p "results/ranks-$ranks"
-    mpirun -q -n "$ranks" "$program" "$@" -report_strokes 5,10,15 -output_every 0 \
+    mpirun -n "$ranks" "$program" "$@" -report_strokes 5,10,15 -output_every 0 \
         -output_dir "results/ranks-$ranks" >"results/ranks-$ranks/run.log" || echo "compare: $ranks rank(s) ended with code $?"
 done
 

@@ -28,7 +28,7 @@ DISKS = 24
 
 
 def command(folder, *more, ranks=1):
-    start = [] if ranks == 1 else ["mpirun", "-q", "-n", str(ranks)]
+    start = [] if ranks == 1 else ["mpirun", "-n", str(ranks)]
     return [*start, str(PROGRAM), *CASE, "-output_dir", str(folder), *more]
 
 

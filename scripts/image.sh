@@ -71,7 +71,7 @@ echo "image: ran for $((SECONDS - start)) s"
 source scripts/environment.sh
 cargo build --release --locked
 echo "image: run without it"
-mpirun -q -n 2 "${CARGO_TARGET_DIR:-target}/release/ssnp155" -options_file inputs/ssnp155.opts \
+mpirun -n 2 "${CARGO_TARGET_DIR:-target}/release/ssnp155" -options_file inputs/ssnp155.opts \
     -output_dir "$results/native" >"$results/native.log" || echo "image: the native run ended with code $?"
 
 exec python3 scripts/compare_runs.py "$results/image" "$results/native"

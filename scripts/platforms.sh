@@ -99,10 +99,10 @@ source scripts/environment.sh
 cargo build --release --locked
 cargo build --release --locked -p petsc --tests
 for ranks in 1 2; do
-    export CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER="mpirun -q -n $ranks"
+    export CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER="mpirun -n $ranks"
     cargo test --release --locked -p petsc --tests --no-fail-fast >"$results/tests-$ranks.log" 2>&1 ||
         echo "platforms: tests on $ranks ranks failed, see $results/tests-$ranks.log"
-    mpirun -q -n "$ranks" "${CARGO_TARGET_DIR:-target}/release/ssnp155" -options_file inputs/ssnp155.opts \
+    mpirun -n "$ranks" "${CARGO_TARGET_DIR:-target}/release/ssnp155" -options_file inputs/ssnp155.opts \
         -output_dir "$results/ranks-$ranks" >"$results/run-$ranks.log" 2>&1 ||
         echo "platforms: the benchmark on $ranks ranks ended with code $?"
 done

@@ -10,7 +10,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::Command;
 
-use program::scratch;
+use program::{FEW_CORES, scratch};
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 const DOCUMENTS: [&str; 2] = ["README.md", "docs/using.md"];
@@ -138,11 +138,7 @@ fn every_command_of_the_documents_works() {
                 .args(["-k", "5", "120", "bash", "-e", "-c", &kept.join("\n")])
                 .env("PATH", &path)
                 .env_remove("CARGO_TARGET_DIR")
-                .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
-                .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
-                .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
-                .env("OMPI_MCA_hwloc_base_binding_policy", "none")
-                .env("OMPI_MCA_mpi_yield_when_idle", "1")
+                .envs(FEW_CORES)
                 .current_dir(&folder)
                 .output()
                 .unwrap();

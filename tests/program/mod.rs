@@ -7,6 +7,10 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+#[path = "../mpi_environment/mod.rs"]
+mod mpi_environment;
+pub use mpi_environment::FEW_CORES;
+
 /// How a run of the program ended.
 pub struct Ended {
     pub code: Option<i32>,
@@ -36,25 +40,12 @@ pub fn command(ranks: usize, words: &[&str]) -> Command {
         Command::new(program)
     } else {
         let mut command = Command::new("mpirun");
-        command.args(["-q", "--oversubscribe", "-n", &ranks.to_string(), program]);
+        command.args(["--oversubscribe", "-n", &ranks.to_string(), program]);
         command
     };
     command.args(words);
-    for_few_cores(&mut command);
+    command.envs(FEW_CORES);
     command
-}
-
-/// Several ranks on few cores, also for root.
-fn for_few_cores(command: &mut Command) -> &mut Command {
-    command
-        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
-        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
-        .env("OMPI_MCA_hwloc_base_binding_policy", "none")
-        .env("OMPI_MCA_btl_vader_single_copy_mechanism", "none")
-        // More ranks than cores must not wait in a busy loop for those that have none.
-        .env("OMPI_MCA_mpi_yield_when_idle", "1")
-        .env("OPENBLAS_NUM_THREADS", "1")
-        .env("OMP_NUM_THREADS", "1")
 }
 
 /// Runs the program with these words, by mpirun if there is more than one rank. A run that takes longer than `seconds`
@@ -77,7 +68,7 @@ pub fn run_in(
         command.arg(seconds.to_string());
     } else {
         // mpirun's own limit ends the ranks; the outer one is for an mpirun that hangs itself.
-        command.args([&(seconds + 10).to_string(), "mpirun", "-q", "--timeout"]);
+        command.args([&(seconds + 10).to_string(), "mpirun", "--timeout"]);
         command.args([
             &seconds.to_string(),
             "--oversubscribe",
@@ -86,7 +77,8 @@ pub fn run_in(
         ]);
     }
     command.arg(env!("CARGO_BIN_EXE_ssnp155")).args(words);
-    for_few_cores(&mut command)
+    command
+        .envs(FEW_CORES)
         .envs(environment)
         .current_dir(folder);
     let output = command.output().expect("timeout and mpirun are needed");

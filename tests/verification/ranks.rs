@@ -3,7 +3,11 @@
 use std::collections::HashMap;
 use std::process::Command;
 
+#[path = "../mpi_environment/mod.rs"]
+mod mpi_environment;
+
 use crate::row::{Answer, Case, Result};
+use mpi_environment::FEW_CORES;
 
 /// The word that makes this program one of two ranks.
 pub const WORKER: &str = "--worker";
@@ -28,12 +32,7 @@ pub fn by_two(cases: &[&Case]) -> Result<Found> {
         .arg(std::env::current_exe()?)
         .arg(WORKER)
         .args(names)
-        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
-        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
-        .env("OMPI_MCA_hwloc_base_binding_policy", "none")
-        .env("OMPI_MCA_btl_vader_single_copy_mechanism", "none")
-        .env("OMPI_MCA_mpi_yield_when_idle", "1")
-        .env("OPENBLAS_NUM_THREADS", "1")
+        .envs(FEW_CORES)
         .output()?;
     let text = String::from_utf8_lossy(&output.stdout);
     print!("{text}");

@@ -7,6 +7,10 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 use petsc::Session;
 
+#[path = "../mpi_environment/mod.rs"]
+mod mpi_environment;
+use mpi_environment::FEW_CORES;
+
 const WORKER: &str = "--worker";
 
 /// Runs `worker` on each of these numbers of ranks, and says whether it passed.
@@ -21,13 +25,7 @@ pub fn on_ranks(name: &str, numbers: &[usize], worker: fn(&SimpleCommunicator)) 
             .args(["--timeout", "120", "-n", &ranks.to_string()])
             .arg(env::current_exe().unwrap())
             .arg(WORKER)
-            .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
-            .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
-            .env("OMPI_MCA_hwloc_base_binding_policy", "none")
-            .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
-            .env("OMPI_MCA_btl_vader_single_copy_mechanism", "none")
-            .env("OMPI_MCA_mpi_yield_when_idle", "1")
-            .env("OPENBLAS_NUM_THREADS", "1")
+            .envs(FEW_CORES)
             .status()
             .unwrap();
         let verdict = if status.success() { "ok" } else { "FAILED" };
