@@ -1,6 +1,6 @@
 //! Sheet metal forming with contact: the NAFEMS contact benchmark 3 (code_aster test SSNP155).
 //!
-//! Units are mm, N, MPa, g and ms throughout. ARCHITECTURE.md tells what lives where.
+//! Units are mm, N, MPa, g and ms throughout. ARCHITECTURE.md says what lives where.
 
 #![deny(unsafe_code)]
 

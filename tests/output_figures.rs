@@ -1,5 +1,5 @@
-//! The figures can be drawn from plausible data, contain what they should, and stay for a look in the folder `tmp` of
-//! cargo's target folder.
+//! The figures are drawn from plausible data and read back: what is drawn stands where the data are, by one linear map
+//! from millimetres and newtons to the picture. They stay for a look in the folder `tmp` of cargo's target folder.
 
 use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
@@ -106,6 +106,82 @@ fn draw(name: &str, elements: &[DeformedElement], stroke_mm: f64) -> String {
     std::fs::read_to_string(file(name)).unwrap()
 }
 
+/// The corners of the polygons or polylines of a picture, one list each, in its order.
+fn drawn(svg: &str, shape: &str) -> Vec<Vec<[f64; 2]>> {
+    let corner = |word: &str| -> [f64; 2] {
+        let (x, y) = word.split_once(',').unwrap();
+        [x, y].map(|number| number.parse().unwrap())
+    };
+    svg.split(&format!("<{shape} "))
+        .skip(1)
+        .map(|rest| {
+            let points = rest.split_once("points=\"").unwrap().1;
+            let points = points.split_once('"').unwrap().0;
+            points.split_whitespace().map(corner).collect()
+        })
+        .collect()
+}
+
+/// The map from data to the picture along one axis, by the two data that are farthest apart.
+struct Axis {
+    scale: f64,
+    origin: f64,
+}
+
+impl Axis {
+    fn through(data: &[f64], picture: &[f64]) -> Self {
+        let by = |a: &usize, b: &usize| data[*a].total_cmp(&data[*b]);
+        let least = (0..data.len()).min_by(by).unwrap();
+        let most = (0..data.len()).max_by(by).unwrap();
+        let scale = (picture[most] - picture[least]) / (data[most] - data[least]);
+        Self {
+            scale,
+            origin: picture[least] - scale * data[least],
+        }
+    }
+
+    /// Whether `picture` is where `value` belongs; the picture's numbers are whole.
+    fn has(&self, value: f64, picture: f64) -> bool {
+        (self.origin + self.scale * value - picture).abs() < 2.0
+    }
+}
+
+/// The axes that carry `data` to `picture`, point by point.
+fn axes(data: &[[f64; 2]], picture: &[[f64; 2]]) -> [Axis; 2] {
+    assert_eq!(data.len(), picture.len());
+    let axes = [0, 1].map(|k| {
+        let along = |points: &[[f64; 2]]| -> Vec<f64> { points.iter().map(|x| x[k]).collect() };
+        Axis::through(&along(data), &along(picture))
+    });
+    every_point_fits(&axes, data, picture);
+    axes
+}
+
+fn every_point_fits(axes: &[Axis; 2], data: &[[f64; 2]], picture: &[[f64; 2]]) {
+    assert_eq!(data.len(), picture.len());
+    for (x, drawn) in data.iter().zip(picture) {
+        let fits = (0..2).all(|k| axes[k].has(x[k], drawn[k]));
+        assert!(fits, "{x:?} is drawn at {drawn:?}");
+    }
+}
+
+/// Every element is drawn where its corners are, with one scale in both directions, y upwards.
+fn the_sheet_is_where_it_should_be(svg: &str, elements: &[DeformedElement]) {
+    let polygons = drawn(svg, "polygon");
+    // Die and punch come first; then each element, followed by its mirror image.
+    let right_half = polygons[2..].iter().step_by(2).take(elements.len());
+    let picture: Vec<[f64; 2]> = right_half.flatten().copied().collect();
+    let corners = elements.iter().flat_map(|element| &element.nodes[..4]);
+    let corners: Vec<[f64; 2]> = corners.copied().collect();
+    let [x, y] = axes(&corners, &picture);
+    assert!(x.scale > 0.0 && (x.scale + y.scale).abs() < 0.02 * x.scale);
+    for pair in polygons[2..].chunks_exact(2).take(elements.len()) {
+        let (half, mirrored) = (pair[0][0], pair[1][0]);
+        assert!((half[0] + mirrored[0] - 2.0 * x.origin).abs() < 4.0);
+        assert_eq!(half[1], mirrored[1]);
+    }
+}
+
 #[test]
 fn the_force_figure_shows_loading_unloading_and_the_reference() {
     let force =
@@ -144,6 +220,15 @@ fn the_force_figure_shows_loading_unloading_and_the_reference() {
     ] {
         assert!(svg.contains(text), "{text}");
     }
+    let reference = Case::reference().unwrap().reference_force().unwrap();
+    let ours: Vec<[f64; 2]> = records.iter().map(|r| [r.stroke_mm, r.force_N]).collect();
+    let lines = drawn(&svg, "polyline");
+    // Where a line has as many points as its data, it is that line: the numbers are all different.
+    let line = |data: &[[f64; 2]]| lines.iter().find(|line| line.len() == data.len()).unwrap();
+    let (loading, unloading) = (&ours[..191], &ours[190..]);
+    let frame = axes(loading, line(loading));
+    every_point_fits(&frame, unloading, line(unloading));
+    every_point_fits(&frame, &reference.curve, line(&reference.curve));
 }
 
 #[test]
@@ -152,8 +237,12 @@ fn the_shape_figure_shows_the_sheet_at_several_instants() {
     let svg = draw("shape-loaded.svg", &full, 28.5);
     // At least both halves of every element, two tools and the stripes of the colour bar; then the close-up.
     assert!(svg.matches("<polygon").count() > 2 * 850 + 2 + 128);
-    draw("shape-half.svg", &bent_sheet(170, 5, 0.7, 14.25), 14.25);
-    draw("shape-start.svg", &bent_sheet(170, 5, 0.0, 0.0), 0.0);
+    the_sheet_is_where_it_should_be(&svg, &full);
+    for (name, angle, stroke) in [("half", 0.7, 14.25), ("start", 0.0, 0.0)] {
+        let elements = bent_sheet(170, 5, angle, stroke);
+        let svg = draw(&format!("shape-{name}.svg"), &elements, stroke);
+        the_sheet_is_where_it_should_be(&svg, &elements);
+    }
     // A sheet of another size fills its picture as well.
     let [small, large] = [0.5, 40.0].map(|factor: f64| {
         let scaled = |line: Vec<[f64; 2]>| -> Vec<[f64; 2]> {

@@ -33,12 +33,13 @@ fn angles(name: &str, friction: &str) -> (f64, f64) {
 fn without_friction_both_kinds_of_release_end_at_the_same_angle() {
     let (withdrawn, vanished) = angles("free", "0");
     assert!((withdrawn - vanished).abs() < 0.1, "{withdrawn} {vanished}");
-    assert!((withdrawn - 45.73).abs() < 0.3, "{withdrawn}");
+    // Our own value on this mesh, as a regression; the path through the snap scatters by this much.
+    assert!((withdrawn - 45.77).abs() < 0.3, "{withdrawn}");
 }
 
 #[test]
 fn with_friction_the_sheet_yields_again_on_release() {
     let (withdrawn, vanished) = angles("friction", "0.1342");
-    assert!((withdrawn - 54.6).abs() < 1.0, "{withdrawn}");
+    assert!((withdrawn - 54.50).abs() < 0.3, "{withdrawn}");
     assert!(vanished - withdrawn > 1.0, "{withdrawn} {vanished}");
 }

@@ -16,9 +16,9 @@ const CODE_ASTER: &str = include_str!("../../inputs/reference/code_aster-15.2-fr
 pub struct ReferenceForce {
     /// Who computed the curve.
     pub name: String,
-    /// Way of the punch (mm) and force (N), in the order of time; empty if there is no curve.
+    /// Travel of the punch (mm) and force (N), in the order of time; empty if there is no curve.
     pub curve: Vec<[f64; 2]>,
-    /// Way of the punch (mm), force (N) and how far a result may be from it (N), going down.
+    /// Travel of the punch (mm), force (N) and how far a result may be from it (N), going down.
     pub points: Vec<[f64; 3]>,
 }
 
