@@ -93,7 +93,7 @@ source scripts/environment.sh
 {
     rustc --version
     mpirun --version | head -n 1
-    ls /usr/lib/x86_64-linux-gnu/ | grep -E '^libdmumps-[0-9.]+\.so$' || true
+    dpkg-query -W -f='MUMPS ${Version}\n' libmumps-dev
     dpkg-query -W -f='HDF5 ${Version}\n' libhdf5-openmpi-dev
 } >"$results/versions.txt"
 cargo build --release --locked

@@ -34,14 +34,15 @@ const PACKAGE_DEFAULTS: &[(&str, &str)] = &[
     ("condensed_mat_mumps_icntl_6", "0"),
 ];
 
-/// For a PETSc without MUMPS, whose own factorisation works on one rank.
+/// For a PETSc without MUMPS, on one rank.
 const WITHOUT_MUMPS: &[(&str, &str)] = &[
     (PACKAGE, "petsc"),
     // A long thin sheet is a narrow band.
     ("condensed_pc_factor_mat_ordering_type", "rcm"),
 ];
-/// On several ranks each factorises the whole system.
+/// PETSc's own factorisation works on one rank: on several, each factorises the whole system.
 const WITHOUT_MUMPS_ON_RANKS: &[(&str, &str)] = &[
+    (PACKAGE, "petsc"),
     ("condensed_pc_type", "redundant"),
     ("condensed_redundant_pc_type", "lu"),
     ("condensed_redundant_pc_factor_mat_ordering_type", "rcm"),
@@ -63,12 +64,12 @@ pub(in crate::run) fn report(comm: &SimpleCommunicator) -> petsc::Result<String>
 
 /// Puts the choice for a PETSc without MUMPS into the option database, where the user has not chosen.
 fn do_without_mumps(comm: &SimpleCommunicator) -> petsc::Result<()> {
-    let on_ranks = if comm.size() == 1 {
-        &[]
+    let choice = if comm.size() == 1 {
+        WITHOUT_MUMPS
     } else {
         WITHOUT_MUMPS_ON_RANKS
     };
-    for (name, value) in WITHOUT_MUMPS.iter().chain(on_ranks) {
+    for (name, value) in choice {
         options::set_default(name, value)?;
     }
     Ok(())
