@@ -54,6 +54,8 @@ fn for_few_cores(command: &mut Command) -> &mut Command {
         .env("OMPI_MCA_hwloc_base_binding_policy", "none")
         .env("PRTE_MCA_hwloc_default_binding_policy", "none")
         .env("OMPI_MCA_btl_vader_single_copy_mechanism", "none")
+        // All ranks are here; Open MPI 5 complains of networks it will not use.
+        .env("OMPI_MCA_btl", "^tcp")
         // More ranks than cores must not wait in a busy loop for those that have none.
         .env("OMPI_MCA_mpi_yield_when_idle", "1")
         .env("OPENBLAS_NUM_THREADS", "1")
