@@ -10,7 +10,7 @@ export OMPI_MCA_hwloc_base_binding_policy=none PRTE_MCA_hwloc_default_binding_po
 export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
 # A rank that waits must not keep the core from one that works: without this, a busy machine is many times slower.
 export OMPI_MCA_mpi_yield_when_idle=1
-# What a rank says is enough where one fails; Open MPI 5 is quieter by itself.
+# What a rank says is enough where one fails; Open MPI 5 adds a paragraph of its own all the same.
 export OMPI_MCA_orte_execute_quiet=1
 # Containers often run as root, and without the rights for single-copy messages.
 if [ "$(id -u)" -eq 0 ]; then

@@ -44,9 +44,9 @@ def column(results, name):
     passed, failed, petsc = tests(folder / "tests-1.log")
     version, mumps = petsc or ("?", "?")
     rows["PETSc"] = version
-    rows["MUMPS"] = find(r"libdmumps-([\d.]+)\.so") if mumps == "true" else "none"
+    rows["MUMPS"] = find(r"MUMPS ([\d.]+)") if mumps == "true" else "none"
     rows["MPI"] = "Open MPI " + find(r"Open MPI\) (\S+)")
-    rows["HDF5"] = find(r"HDF5 ([\d.]+)")
+    rows["HDF5"] = find(r"HDF5 ([\d.]+\d)")
     rows["rustc"] = find(r"rustc (\S+)")
     for ranks in (1, 2):
         passed, failed, _ = tests(folder / f"tests-{ranks}.log")

@@ -6,7 +6,7 @@
 #   newest             the newest PETSc 3.26 from its source package (PyPI), without MUMPS, in the root of trixie
 # Needs root, debootstrap, a Rust toolchain and pip. From the environment:
 #   PLATFORM_ROOTS     where the roots are and stay, 4 GB each: target/platforms unless given
-#   PLATFORM_MIRROR    Debian's mirror
+#   PLATFORM_MIRROR    Debian's mirror; the first one of this machine unless given
 # Each root takes some minutes the first time. Results: results-platforms/NAME/, and the table of docs/platforms.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -15,7 +15,7 @@ cd "$(dirname "$0")/.."
 project=$PWD
 mkdir -p "${PLATFORM_ROOTS:=target/platforms}"
 roots=$(cd "$PLATFORM_ROOTS" && pwd)
-mirror=${PLATFORM_MIRROR:-http://deb.debian.org/debian}
+mirror=${PLATFORM_MIRROR:-$(apt-get indextargets --format '$(REPO_URI)' | head -n 1)}
 petsc_release='petsc==3.26.*'
 results=$project/results-platforms
 mkdir -p "$results"
@@ -93,7 +93,7 @@ source scripts/environment.sh
 {
     rustc --version
     mpirun --version | head -n 1
-    ls /usr/lib/x86_64-linux-gnu/ | grep -E '^libdmumps-[0-9.]+\.so$' || true
+    dpkg-query -W -f='MUMPS ${Version}\n' libmumps-dev
     dpkg-query -W -f='HDF5 ${Version}\n' libhdf5-openmpi-dev
 } >"$results/versions.txt"
 cargo build --release --locked

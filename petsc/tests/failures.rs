@@ -2,10 +2,7 @@
 
 mod common;
 
-use std::{
-    cell::{Cell, RefCell},
-    rc::Rc,
-};
+use std::{cell::Cell, rc::Rc};
 
 use common::vector;
 use mpi::topology::{Communicator, SimpleCommunicator};
@@ -41,12 +38,7 @@ fn main() {
         ("a_residual_that_is_not_a_number_is_a_reason", not_a_number),
         ("a_stage_outside_the_domain_is_cut_back", stage_domain),
         ("a_refused_stage_is_cut_back", stage_refused),
-        ("a_refused_first_step_ends", first_step_forgets),
         ("a_method_that_does_not_fit_is_refused", unfit_method),
-        (
-            "parameters_of_the_method_given_as_options_are_seen",
-            alpha_options,
-        ),
     ]);
 }
 
@@ -384,57 +376,6 @@ fn stage_refused(comm: &SimpleCommunicator) {
     assert_eq!(ts.step_number().unwrap(), 40);
 }
 
-/// A failure of TSALPHA2 before PETSc 3.21, see the notes on time integration.
-fn first_step_forgets(comm: &SimpleCommunicator) {
-    let steps: Rc<RefCell<Vec<f64>>> = Rc::default();
-    let seen = Rc::clone(&steps);
-    let u = vector(comm, 1, |_| 1.0);
-    let own = comm.rank();
-    let mut ts = Ts::new(comm).unwrap();
-    ts.set_second_order(
-        &u,
-        Matrix::from_coo(comm, 1, &[own], &[own]).unwrap(),
-        |t, _, _, a, f| {
-            if t > 0.03 {
-                Err(Failure::Domain)
-            } else {
-                Ok(f.copy_from(a)?)
-            }
-        },
-        |_, _, _, _, _, shift_a, matrix| Ok(matrix.set_values_coo(&[shift_a])?),
-    )
-    .unwrap();
-    ts.set_solution2(&u, &u).unwrap();
-    ts.set_time_step(0.1).unwrap();
-    ts.set_max_time(0.02).unwrap();
-    ts.set_max_snes_failures(-1).unwrap();
-    ts.set_max_step_rejections(3).unwrap();
-    ts.set_exact_final_time(petsc::ExactFinalTime::StepOver)
-        .unwrap();
-    ts.set_from_options().unwrap();
-    ts.set_post_stage(move |ts, _, _| {
-        seen.borrow_mut().push(ts.time_step()?);
-        Ok(())
-    })
-    .unwrap();
-    let reason = ts.solve().unwrap();
-    if Ts::START_FORGETS_CUT_BACK {
-        assert_eq!(reason, TsReason::DivergedStepRejected);
-        assert_eq!(*steps.borrow(), [0.05; 4]); // the same half step again and again
-        assert_eq!((ts.step_number().unwrap(), ts.time().unwrap()), (0, 0.0));
-        ts.set_time_step(0.01).unwrap(); // the remedy
-        assert_eq!(ts.solve().unwrap(), TsReason::ConvergedTime);
-    } else {
-        assert_eq!(reason, TsReason::ConvergedTime);
-        assert_eq!(steps.borrow()[0], 0.05);
-        // Two halves of the cut-back step, and the step itself.
-        let last = steps.borrow()[1..].to_vec();
-        assert!(last.len() >= 3 && last[0] < 0.03, "{last:?}");
-        assert_eq!(last[0], last[1]);
-        assert!(ts.step_rejections().unwrap() >= 1);
-    }
-}
-
 fn unfit_method(comm: &SimpleCommunicator) {
     for unfit in ["alpha2", "euler", "rk", "rosw", "pseudo", "basicsymplectic"] {
         petsc::options::set("unfit_ts_type", unfit).unwrap();
@@ -476,32 +417,4 @@ fn unfit_method(comm: &SimpleCommunicator) {
         assert!((end - (-1f64).exp()).abs() < 0.03, "{fit}: {end}");
     }
     petsc::options::clear("unfit_ts_type").unwrap();
-}
-
-/// PETSc takes them without a word: a program whose equations need certain ones must be able to look.
-fn alpha_options(comm: &SimpleCommunicator) {
-    let names = [
-        ("ts_alpha_radius", "0.5"),
-        ("ts_alpha_alpha_m", "0.7"),
-        ("ts_alpha_beta", "0.3"),
-    ];
-    for (name, value) in names {
-        assert!(!petsc::options::is_given(name).unwrap());
-        petsc::options::set(name, value).unwrap();
-        let mut ts = Ts::new(comm).unwrap();
-        let u = vector(comm, 1, |_| 1.0);
-        let matrix = Matrix::from_coo(comm, 1, &[comm.rank()], &[comm.rank()]).unwrap();
-        ts.set_second_order(
-            &u,
-            matrix,
-            |_, _, _, _, _| Ok(()),
-            |_, _, _, _, _, _, _| Ok(()),
-        )
-        .unwrap();
-        let before = ts.alpha2_get_params().unwrap();
-        ts.set_from_options().unwrap();
-        assert_ne!(ts.alpha2_get_params().unwrap(), before, "{name}");
-        assert!(petsc::options::is_given(name).unwrap()); // also after PETSc has read it
-        petsc::options::clear(name).unwrap();
-    }
 }

@@ -4,8 +4,9 @@ mod common;
 
 use std::{cell::RefCell, rc::Rc};
 
-use mpi::topology::SimpleCommunicator;
-use petsc::{Alpha2State, CallbackError, Matrix, Ts, TsReason, Vector};
+use common::vector;
+use mpi::topology::{Communicator, SimpleCommunicator};
+use petsc::{Alpha2State, CallbackError, Failure, Matrix, Ts, TsReason, Vector};
 
 fn main() {
     common::run(&[
@@ -27,6 +28,11 @@ fn main() {
         (
             "the_acceleration_of_a_step_is_that_of_its_equations",
             stage_acceleration,
+        ),
+        ("a_refused_first_step_ends", first_step_forgets),
+        (
+            "parameters_of_the_method_given_as_options_are_seen",
+            alpha_options,
         ),
         ("interpolation_at_the_end_is_refused", interpolation),
         ("hooks_see_times_in_order", hooks),
@@ -321,4 +327,83 @@ fn hooks(comm: &SimpleCommunicator) {
     expected.extend(stage(1.0));
     expected.extend([("post-step", 1.0), ("monitor", 1.0)]);
     assert_eq!(*calls.borrow(), expected);
+}
+
+/// A failure of TSALPHA2 before PETSc 3.21, see the notes on time integration.
+fn first_step_forgets(comm: &SimpleCommunicator) {
+    let steps: Rc<RefCell<Vec<f64>>> = Rc::default();
+    let seen = Rc::clone(&steps);
+    let u = vector(comm, 1, |_| 1.0);
+    let own = comm.rank();
+    let mut ts = Ts::new(comm).unwrap();
+    ts.set_second_order(
+        &u,
+        Matrix::from_coo(comm, 1, &[own], &[own]).unwrap(),
+        |t, _, _, a, f| {
+            if t > 0.03 {
+                Err(Failure::Domain)
+            } else {
+                Ok(f.copy_from(a)?)
+            }
+        },
+        |_, _, _, _, _, shift_a, matrix| Ok(matrix.set_values_coo(&[shift_a])?),
+    )
+    .unwrap();
+    ts.set_solution2(&u, &u).unwrap();
+    ts.set_time_step(0.1).unwrap();
+    ts.set_max_time(0.02).unwrap();
+    ts.set_max_snes_failures(-1).unwrap();
+    ts.set_max_step_rejections(3).unwrap();
+    ts.set_exact_final_time(petsc::ExactFinalTime::StepOver)
+        .unwrap();
+    ts.set_from_options().unwrap();
+    ts.set_post_stage(move |ts, _, _| {
+        seen.borrow_mut().push(ts.time_step()?);
+        Ok(())
+    })
+    .unwrap();
+    let reason = ts.solve().unwrap();
+    if Ts::START_FORGETS_CUT_BACK {
+        assert_eq!(reason, TsReason::DivergedStepRejected);
+        assert_eq!(*steps.borrow(), [0.05; 4]); // the same half step again and again
+        assert_eq!((ts.step_number().unwrap(), ts.time().unwrap()), (0, 0.0));
+        ts.set_time_step(0.01).unwrap(); // the remedy
+        assert_eq!(ts.solve().unwrap(), TsReason::ConvergedTime);
+    } else {
+        assert_eq!(reason, TsReason::ConvergedTime);
+        assert_eq!(steps.borrow()[0], 0.05);
+        // Two halves of the cut-back step, and the step itself.
+        let last = steps.borrow()[1..].to_vec();
+        assert!(last.len() >= 3 && last[0] < 0.03, "{last:?}");
+        assert_eq!(last[0], last[1]);
+        assert!(ts.step_rejections().unwrap() >= 1);
+    }
+}
+
+/// PETSc takes them without a word: a program whose equations need certain ones must be able to look.
+fn alpha_options(comm: &SimpleCommunicator) {
+    let names = [
+        ("ts_alpha_radius", "0.5"),
+        ("ts_alpha_alpha_m", "0.7"),
+        ("ts_alpha_beta", "0.3"),
+    ];
+    for (name, value) in names {
+        assert!(!petsc::options::is_given(name).unwrap());
+        petsc::options::set(name, value).unwrap();
+        let mut ts = Ts::new(comm).unwrap();
+        let u = vector(comm, 1, |_| 1.0);
+        let matrix = Matrix::from_coo(comm, 1, &[comm.rank()], &[comm.rank()]).unwrap();
+        ts.set_second_order(
+            &u,
+            matrix,
+            |_, _, _, _, _| Ok(()),
+            |_, _, _, _, _, _, _| Ok(()),
+        )
+        .unwrap();
+        let before = ts.alpha2_get_params().unwrap();
+        ts.set_from_options().unwrap();
+        assert_ne!(ts.alpha2_get_params().unwrap(), before, "{name}");
+        assert!(petsc::options::is_given(name).unwrap()); // also after PETSc has read it
+        petsc::options::clear(name).unwrap();
+    }
 }

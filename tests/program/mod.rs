@@ -85,8 +85,28 @@ pub fn run_in(
     Ended {
         code: output.status.code(),
         stdout: String::from_utf8_lossy(&output.stdout).into_owned(),
-        stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
+        stderr: without_starter(&String::from_utf8_lossy(&output.stderr)),
     }
+}
+
+/// Standard error without what Open MPI 5 says about a rank that ended with another code than 0: a paragraph between
+/// two lines of dashes that begins with the name of its starter.
+fn without_starter(text: &str) -> String {
+    let rule = "-".repeat(74);
+    let mut kept = String::new();
+    let mut parts = text.split(&*rule).peekable();
+    while let Some(part) = parts.next() {
+        kept += part;
+        if parts
+            .peek()
+            .is_some_and(|next| next.trim_start().starts_with("prterun detected"))
+        {
+            parts.next();
+        } else if parts.peek().is_some() {
+            kept += &rule;
+        }
+    }
+    kept
 }
 
 /// The columns of a run's `history.csv` by name.

@@ -40,14 +40,15 @@ const PACKAGE_DEFAULTS: &[(&str, &str)] = &[
     (condensed!("mat_mumps_icntl_6"), "0"),
 ];
 
-/// For a PETSc without MUMPS, whose own factorisation works on one rank.
+/// For a PETSc without MUMPS, on one rank.
 const WITHOUT_MUMPS: &[(&str, &str)] = &[
     (PACKAGE, "petsc"),
     // A long thin sheet is a narrow band.
     (condensed!("pc_factor_mat_ordering_type"), "rcm"),
 ];
-/// On several ranks each factorises the whole system.
+/// PETSc's own factorisation works on one rank: on several, each factorises the whole system.
 const WITHOUT_MUMPS_ON_RANKS: &[(&str, &str)] = &[
+    (PACKAGE, "petsc"),
     (condensed!("pc_type"), "redundant"),
     (condensed!("redundant_pc_type"), "lu"),
     (condensed!("redundant_pc_factor_mat_ordering_type"), "rcm"),
@@ -198,10 +199,10 @@ fn choose(comm: &SimpleCommunicator) -> petsc::Result<Option<SolverChoice>> {
         return Ok(None);
     }
     if !mumps {
-        set_defaults(WITHOUT_MUMPS)?;
-        if comm.size() > 1 {
-            set_defaults(WITHOUT_MUMPS_ON_RANKS)?;
-        }
+        set_defaults(match comm.size() {
+            1 => WITHOUT_MUMPS,
+            _ => WITHOUT_MUMPS_ON_RANKS,
+        })?;
     }
     options::set_default(PACKAGE, DEFAULT_PACKAGE)?;
     let mut method = CondensedMethod::Whole;
