@@ -1,6 +1,7 @@
 //! The program: opens MPI and PETSc, reads the case, runs it, and ends with a code that says how.
 
 use std::fmt::Display;
+use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
@@ -14,6 +15,8 @@ use ssnp155::case::{
 use ssnp155::ranks::lowest_failing;
 use ssnp155::run::{Ending, conclude, simulate};
 
+/// PETSc's option against its own signal handlers.
+const NO_HANDLERS: &str = "-no_signal_handler";
 /// Exit code of a run that did not finish, or whose verdicts do not hold.
 const NOT_HELD: u8 = 1;
 /// Exit code of a run that was ended on request and can go on.
@@ -23,7 +26,7 @@ const REFUSED: u8 = 2;
 
 fn main() -> ExitCode {
     let Some((universe, _)) = mpi::initialize_with_threading(mpi::Threading::Funneled) else {
-        eprintln!("ssnp155: MPI cannot be started");
+        complain("MPI cannot be started");
         return ExitCode::from(REFUSED);
     };
     let world = universe.world();
@@ -59,9 +62,17 @@ fn program(world: &SimpleCommunicator) -> Result<Ending, Refused> {
     }
 }
 
-/// Starts PETSc, which reads the options.
+/// The last sentence; nobody may be listening any more, which must not change the code.
+fn complain(sentence: impl Display) {
+    let _ = writeln!(std::io::stderr(), "ssnp155: {sentence}");
+}
+
+/// Starts PETSc, which reads the options. Its signal handlers would end the run with a traceback where a pipe closes or
+/// a terminal goes away, so they stay out unless asked for; the run has handlers of its own.
 fn open_session(args: &[String]) -> Result<Session, String> {
-    Session::with_help(args, &help_text()).map_err(|error| {
+    let (program, given) = args.split_at(1.min(args.len()));
+    let args = [program, &[NO_HANDLERS.to_owned()], given].concat();
+    Session::with_help(&args, &help_text()).map_err(|error| {
         format!(
             "PETSc refuses its options ({error}); look at the command line, the option files, {ENVIRONMENT} and .petscrc"
         )
@@ -74,7 +85,7 @@ fn agree<T, E: Display>(world: &SimpleCommunicator, mine: Result<T, E>) -> Resul
     match mine {
         Ok(value) if lowest.is_none() => Ok(value),
         Err(error) if lowest == Some(world.rank()) => {
-            eprintln!("ssnp155: {error}");
+            complain(error);
             Err(Refused)
         }
         _ => Err(Refused),

@@ -160,6 +160,7 @@ fn what_is_shown_reads_back_as_the_same_case() {
         ("checkpoint_minutes", "7.5"),
         ("wall_limit", "3600"),
         ("restart", "results/checkpoint-000123"),
+        ("overwrite", "true"),
         ("dry_run", "true"),
     ];
     let case = read(&given).unwrap();
@@ -297,7 +298,13 @@ fn whole_numbers_words_and_flags_are_what_they_are() {
 fn an_option_without_its_value_is_refused() {
     for (name, _) in Case::reference().unwrap().options() {
         let read = read(&[(name, "")]);
-        let bare = ["extrapolate", "monitor_iterations", "dry_run", "restart"];
+        let bare = [
+            "extrapolate",
+            "monitor_iterations",
+            "dry_run",
+            "restart",
+            "overwrite",
+        ];
         assert_eq!(read.is_ok(), bare.contains(&name), "-{name}");
     }
     assert_eq!(

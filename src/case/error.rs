@@ -230,7 +230,7 @@ pub enum CaseError {
     },
     /// An option of PETSc's that the program has to decide itself.
     #[error(
-        "option -{option} {given}: {reason}{}; leave it out, and {instead}",
+        "option {}: {reason}{}; leave it out, and {instead}", format!("-{option} {given}").trim_end(),
         allowed.map_or_else(String::new, |allowed| format!(", so only {allowed} works here"))
     )]
     Reserved {

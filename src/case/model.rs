@@ -225,6 +225,8 @@ pub struct Resuming {
     pub wall_limit: Option<f64>,
     /// Whether to go on from a checkpoint.
     pub restart: Restart,
+    /// Whether the checkpoint of an interrupted run may be lost.
+    pub overwrite: bool,
 }
 
 /// From where a run goes on.

@@ -73,6 +73,7 @@ impl Case {
                 checkpoint_minutes: table::CHECKPOINT_MINUTES.read(options)?,
                 wall_limit: table::WALL_LIMIT.read(options)?,
                 restart: table::RESTART.read(options)?,
+                overwrite: table::OVERWRITE.read(options)?,
             },
         };
         geometry::check(&case)?;

@@ -261,4 +261,9 @@ option_table! {
         meaning: "Resumes from the newest checkpoint in -output_dir (newest, or no value), or from the one with this path.",
         value: |case| case.resuming.restart.clone(),
     }
+    OVERWRITE: Flag {
+        name: "overwrite", unit: "", default: "false", group: Group::Resuming, kind: Flag,
+        meaning: "Replaces an interrupted run in -output_dir and its checkpoints, which is refused otherwise.",
+        value: |case| case.resuming.overwrite,
+    }
 }

@@ -32,6 +32,22 @@ pub enum OutputError {
         /// The system's words.
         reason: String,
     },
+    /// Another run writes into the folder.
+    #[error("the output folder {} is in use by {holder}; wait until it has ended, or choose another one with -output_dir", path.display())]
+    InUse {
+        /// The folder asked for.
+        path: PathBuf,
+        /// Who, and since when.
+        holder: String,
+    },
+    /// A new run would remove the checkpoint of one that can go on.
+    #[error("the output folder {} holds an interrupted run ({checkpoint}): resume it with -restart, replace it with -overwrite, or choose another one with -output_dir", path.display())]
+    WouldBeLost {
+        /// The folder asked for.
+        path: PathBuf,
+        /// The newest checkpoint's name.
+        checkpoint: String,
+    },
     /// Something in the output folder has the name of a file of the run and cannot be written over.
     #[error("{} cannot be written over: {reason}; move it away, or choose another folder with -output_dir", path.display())]
     NotReplaceable {

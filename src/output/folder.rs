@@ -3,11 +3,14 @@
 use std::fs::{self, File};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use mpi::traits::Communicator;
 
-use super::checkpoint;
 use super::error::{OutputError, agree};
+use super::lock::FolderLock;
+use super::{checkpoint, previous};
+use crate::ranks::broadcast_bytes;
 
 /// The table of steps.
 pub(crate) const HISTORY: &str = "history.csv";
@@ -23,34 +26,78 @@ pub(super) const SUMMARY: &str = "summary.json";
 const REPORT: &str = "report.html";
 /// Force against stroke.
 const FORCE: &str = "force.svg";
+/// What the run has shown.
+const LOG: &str = "run.log";
 /// The model, drawn by a dry run.
 const MODEL: &str = "model.svg";
 
 /// What every run writes under the same name. All of it must be replaceable.
-const FILES: [&str; 7] = [HISTORY, FIELDS, TOOLS, CONTACT, SUMMARY, REPORT, FORCE];
+const FILES: [&str; 8] = [HISTORY, FIELDS, TOOLS, CONTACT, SUMMARY, REPORT, FORCE, LOG];
 
-/// A folder that exists and takes files, as far as rank 0 could check.
+/// A folder that exists and takes files, as far as rank 0 could check, and into which no other run writes.
 #[derive(Debug, Clone)]
 pub struct OutputDir {
     path: PathBuf,
+    /// On rank 0 only.
+    lock: Option<Rc<FolderLock>>,
 }
 
 impl OutputDir {
-    /// Makes the folder (and those above it) if needed and tries to write in it. Collective over `comm`: rank 0
-    /// does the work, all ranks return the same result.
+    /// Makes the folder (and those above it) if needed, tries to write in it, and locks it until the last clone is
+    /// dropped. Collective over `comm`: rank 0 does the work, all ranks return the same result.
     ///
     /// # Errors
-    /// [`OutputError::NotAFolder`], [`OutputError::CannotCreateFolder`], [`OutputError::NotReplaceable`] or
-    /// [`OutputError::NotWritable`].
+    /// [`OutputError::NotAFolder`], [`OutputError::CannotCreateFolder`], [`OutputError::NotReplaceable`],
+    /// [`OutputError::NotWritable`] or [`OutputError::InUse`].
     pub fn create(path: impl AsRef<Path>, comm: &impl Communicator) -> Result<Self, OutputError> {
         let path = path.as_ref();
         let mine = if comm.rank() == 0 {
-            prepare(path)
+            prepare(path).and_then(|()| FolderLock::take(path).map(|lock| Some(Rc::new(lock))))
         } else {
-            Ok(())
+            Ok(None)
         };
-        agree(comm, mine)?;
-        Ok(Self { path: path.into() })
+        let lock = agree(comm, mine)?;
+        Ok(Self {
+            path: path.into(),
+            lock,
+        })
+    }
+
+    /// As [`OutputDir::create`] if there is something with that path; none otherwise, and nothing is made. Collective.
+    ///
+    /// # Errors
+    /// As [`OutputDir::create`].
+    pub fn existing(
+        path: impl AsRef<Path>,
+        comm: &impl Communicator,
+    ) -> Result<Option<Self>, OutputError> {
+        let path = path.as_ref();
+        let found = u8::from(comm.rank() == 0 && fs::metadata(path).is_ok());
+        if broadcast_bytes(comm, 0, vec![found]) == [0] {
+            return Ok(None);
+        }
+        Self::create(path, comm).map(Some)
+    }
+
+    /// Whether the files of an earlier run may be replaced by a run that starts anew or goes on from the checkpoint
+    /// `from`; if so, what is to be said first, on rank 0: lines, or nothing. Collective.
+    ///
+    /// # Errors
+    /// [`OutputError::WouldBeLost`] unless `overwrite`.
+    pub fn replace(
+        &self,
+        from: Option<&Path>,
+        overwrite: bool,
+        comm: &impl Communicator,
+    ) -> Result<String, OutputError> {
+        let mine = match &self.lock {
+            Some(lock) => previous::replace(&self.path, from, overwrite).map(|said| {
+                let warning = "warning: this file system has no locks: do not start a second run into this folder\n";
+                said + if lock.holds() { "" } else { warning }
+            }),
+            None => Ok(String::new()),
+        };
+        agree(comm, mine)
     }
 
     /// Removes what an earlier run said about its end, and its checkpoints newer than `step` (all, with none): a run
@@ -97,6 +144,11 @@ impl OutputDir {
     /// `contact.vtkhdf`, see [`super::ContactFile`].
     pub fn contact(&self) -> PathBuf {
         self.file(CONTACT)
+    }
+
+    /// `run.log`, see [`super::Monitor::log_to`].
+    pub fn log(&self) -> PathBuf {
+        self.file(LOG)
     }
 
     /// `summary.json`, see [`super::Summary`].

@@ -1,10 +1,12 @@
-//! What the terminal shows while a run goes on: a header, and one line per accepted step.
+//! What the terminal shows while a run goes on, and the log of it: a header, and one line per accepted step.
 
 use std::collections::VecDeque;
+use std::fs::{File, OpenOptions};
 use std::io::Write;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
-use super::StepRecord;
+use super::{OutputError, StepRecord};
 use crate::tool::PunchMotion;
 
 /// Steps whose speed is that of the rest.
@@ -86,9 +88,11 @@ impl Progress {
 
 /// Writes the lines above on rank 0 and nothing on the others.
 ///
-/// A terminal that went away must not end a run, so failures to write are ignored; everything shown is in the files.
+/// A terminal or a pipe that went away must not end a run: after a failure to write nothing more is shown, and the log
+/// goes on.
 pub struct Monitor<W: Write> {
     out: Option<W>,
+    log: Option<File>,
     progress: Progress,
 }
 
@@ -97,11 +101,29 @@ impl<W: Write> Monitor<W> {
     pub fn new(rank: i32, out: W, motion: PunchMotion) -> Self {
         Self {
             out: (rank == 0).then_some(out),
+            log: None,
             progress: Progress {
                 motion,
                 recent: VecDeque::new(),
             },
         }
+    }
+
+    /// Writes everything that is shown from now on to a file too: behind what it holds if the run is `resumed`, else in
+    /// its place. To be called on rank 0 only.
+    ///
+    /// # Errors
+    /// [`OutputError::Write`] if the file cannot be made.
+    pub fn log_to(&mut self, path: &Path, resumed: bool) -> Result<(), OutputError> {
+        let mut options = OpenOptions::new();
+        options
+            .create(true)
+            .append(resumed)
+            .truncate(!resumed)
+            .write(true);
+        let log = options.open(path);
+        self.log = Some(log.map_err(|error| OutputError::write(path, error))?);
+        Ok(())
     }
 
     /// Shows [`header`]; from now on the clock runs for a run that is at time `t` (ms).
@@ -120,7 +142,14 @@ impl<W: Write> Monitor<W> {
     /// Shows any other text, a banner or the verdict table for example, as it is.
     pub fn show(&mut self, text: &str) {
         if let Some(out) = &mut self.out {
-            let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+            let shown = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+            if shown.is_err() {
+                self.out = None;
+            }
+        }
+        if let Some(log) = &mut self.log {
+            // A full disk ends the run at the table's next row.
+            let _ = log.write_all(text.as_bytes());
         }
     }
 }

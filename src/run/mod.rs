@@ -40,10 +40,11 @@ pub use step_size::StepControl;
 pub use stop_watch::StopCause;
 
 use crate::case::Case;
+use crate::output::OutputDir;
 use crate::system::{History, Problem, System};
 use ledger::Spent;
 use outcome::why;
-use setup::{blas, defaults, linear, unread};
+use setup::{blas, defaults, doubtful, linear, unread};
 use simulation::Simulation;
 use step_size::landmarks;
 use stop_watch::StopWatch;
@@ -58,13 +59,21 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     if petsc::options::has("help")? {
         return defaults::read_options(case, comm).map(|()| None);
     }
-    unread::refuse_bad_options(case)?;
+    unread::refuse_bad_options(case, comm)?;
     defaults::read_options(case, comm)?;
     if case.output.dry_run {
         return dry_run::describe(case, comm).map(|()| None);
     }
     let stop_watch = StopWatch::new(&case.resuming, clock)?;
+    // The lock comes before the look at the checkpoints; a refused restart makes no folder.
+    let existing = OutputDir::existing(&case.output.dir, comm)?;
     let resumed = checkpoint::open(case, comm)?;
+    let folder = match existing {
+        Some(folder) => folder,
+        None => OutputDir::create(&case.output.dir, comm)?,
+    };
+    let from = resumed.as_ref().map(|earlier| earlier.path.as_path());
+    let replaced = folder.replace(from, case.resuming.overwrite, comm)?;
     let spent = Spent::new(clock, resumed.as_ref().map_or([0.0; 2], Resumed::spent));
     let problem = Problem::new(case);
     let motion = case.loading.motion();
@@ -75,16 +84,20 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
         Some(resumed) => resumed.history(&system)?,
         None => History::virgin(system.local()),
     };
-    let mut recorder = Recorder::new(case, &system, resumed.as_ref())?;
+    let mut recorder = Recorder::new(case, &system, resumed.as_ref(), folder)?;
+    recorder.show(&replaced);
     recorder.show(&blas::report(comm));
     recorder.show(&linear::report(comm)?);
+    recorder.show(&doubtful::report()?);
     let simulation = Rc::new(Simulation::new(
         case, system, history, recorder, landmarks, stop_watch, spent,
     )?);
     let finish = simulation.run(case, resumed.as_ref())?;
     // A limit of the user's (-ts_max_steps) is a good end for PETSc, but not for the motion.
     let short = finish.interruption.is_none() && finish.time < motion.end() * (1.0 - 1e-9);
+    let suspects = doubtful::given()?;
     let failure = (short || finish.reason.is_diverged()).then(|| Failure {
+        suspects,
         time: finish.time,
         depth: motion.depth(finish.time),
         reason: why(case, finish.reason, &finish.refusals),

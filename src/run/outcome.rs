@@ -45,6 +45,8 @@ pub struct Failure {
     pub reason: String,
     /// The solves that were refused, longest step first.
     pub refusals: Vec<Refusal>,
+    /// Options of PETSc's that may be to blame, and what they do.
+    pub suspects: Vec<(String, &'static str)>,
     /// The state before the step, to go on from with other options.
     pub checkpoint: Option<PathBuf>,
 }

@@ -7,15 +7,16 @@ use std::time::{Duration, Instant};
 use mpi::collective::SystemOperation;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, CommunicatorCollectives};
-use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1};
 
 use crate::case::Resuming;
 
 /// Signals that ask a run to end after the present step.
-const SIGNALS: [(i32, &str); 3] = [
+const SIGNALS: [(i32, &str); 4] = [
     (SIGINT, "SIGINT"),
     (SIGTERM, "SIGTERM"),
     (SIGUSR1, "SIGUSR1"),
+    (SIGHUP, "SIGHUP"),
 ];
 /// Before the wall limit, the longest step and the longest checkpoint until now are kept in hand this many times.
 const RESERVE: u32 = 2;
@@ -49,6 +50,14 @@ impl StopCause {
     }
 }
 
+/// Whether the process was started with this signal ignored, where Linux says so.
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|bits| u64::from_str_radix(bits.trim(), 16).ok());
+    mask.is_some_and(|bits| bits >> (signal - 1) & 1 == 1)
+}
+
 /// Looks at the clock and at signals between steps.
 pub(super) struct StopWatch {
     wishes: Resuming,
@@ -70,6 +79,10 @@ impl StopWatch {
     pub fn new(wishes: &Resuming, start: Instant) -> std::io::Result<Self> {
         let signal = Arc::new(AtomicUsize::new(0));
         for (place, (number, _)) in SIGNALS.iter().enumerate() {
+            // Under nohup the run goes on without its terminal.
+            if *number == SIGHUP && is_ignored(SIGHUP) {
+                continue;
+            }
             signal_hook::flag::register_usize(*number, Arc::clone(&signal), place + 1)?;
         }
         let now = Instant::now();

@@ -120,7 +120,7 @@ pub const MISTAKES: &[Mistake] = &[
         "option of nobody",
         ONE,
         "-verbose",
-        "option -verbose is unknown: the nearest one is -stroke (0 < value <= 100000 mm; default 28.5 mm); -help lists all",
+        "option -verbose is unknown: the nearest one is -overwrite (true or false; default false); -help lists all",
     ),
     words(
         "count of zero",

@@ -32,7 +32,14 @@ const LAST: usize = 3;
 pub(super) fn diagnose(case: &Case, failure: &Failure, steps: u64) -> Result<Diagnosis, CaseError> {
     let reference = Case::reference()?;
     let (cause, typical) = typical(&failure.refusals).unzip();
-    let words = cause.map_or("", Cause::words);
+    let words = match cause {
+        Some(Cause::Matrix) if !failure.suspects.is_empty() => {
+            "The linear solve that the options choose did not succeed."
+        }
+        cause => cause.map_or("", Cause::words),
+    };
+    let suspects = failure.suspects.iter();
+    let suspects = suspects.map(|(option, effect)| format!("leave out {option}: {effect}"));
     let advice = |cause| {
         remedies(&Stopped {
             case,
@@ -49,7 +56,9 @@ pub(super) fn diagnose(case: &Case, failure: &Failure, steps: u64) -> Result<Dia
         cause: format!("{}. {words}", failure.reason).trim_end().to_owned(),
         observed: typical.map_or_else(Vec::new, |refusal| observed(case, refusal)),
         tried: tried(&failure.refusals),
-        remedies: cause.map_or_else(Vec::new, advice),
+        remedies: suspects
+            .chain(cause.map_or_else(Vec::new, advice))
+            .collect(),
     })
 }
 

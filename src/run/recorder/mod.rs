@@ -41,7 +41,7 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Opens the files. Collective.
+    /// Opens the files in a folder that may be written. Collective.
     ///
     /// # Errors
     /// If a file cannot be made; the same on every rank.
@@ -49,11 +49,11 @@ impl Recorder {
         case: &Case,
         system: &System,
         resumed: Option<&Resumed>,
+        folder: OutputDir,
     ) -> Result<Self, OutputError> {
         let comm = system.comm();
         let rows = resumed.map(|earlier| earlier.rows_so_far(system));
         let rows = rows.transpose()?;
-        let folder = OutputDir::create(&case.output.dir, comm)?;
         let mine = if comm.rank() == 0 {
             folder.forget(resumed.map(Resumed::steps))
         } else {
@@ -70,6 +70,12 @@ impl Recorder {
             _ => Ok(None),
         };
         let history = agree(comm, mine)?;
+        let mut monitor = Monitor::new(comm.rank(), stdout(), case.loading.motion());
+        let mine = match comm.rank() {
+            0 => monitor.log_to(&folder.log(), resumed.is_some()),
+            _ => Ok(()),
+        };
+        agree(comm, mine)?;
         let points = local.contact_references();
         let part = SheetPart {
             coordinates: local.node_coordinates().to_vec(),
@@ -77,7 +83,7 @@ impl Recorder {
             rank: comm.rank(),
         };
         let mut this = Self {
-            monitor: Monitor::new(comm.rank(), stdout(), case.loading.motion()),
+            monitor,
             history,
             sheet: SheetFile::create(folder.fields(), comm, &part)?,
             part,

@@ -7,6 +7,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 use petsc::{CallbackError, Failure, Matrix, MatrixRef, SnesRef, VectorRef, options};
 
+use super::doubtful::value;
 use crate::case::condensed_option as condensed;
 use crate::system::{
     CondensedMethod, CondensedSolve, EvaluationError, History, JacobianEntries, SolverChoice,
@@ -18,12 +19,21 @@ const SOLVER: &str = "vinewtonrsls";
 
 /// Options that ask PETSc to solve the linear systems, with what it then needs by default.
 const LEFT_TO_PETSC: &str = "pc_type";
+/// The preconditioner that solves exactly, by MUMPS where it is there.
+const DIRECT: &str = "lu";
 const PETSC_DEFAULTS: &[(&str, &str)] = &[
-    ("ksp_type", "preonly"),
     ("pc_type", "lu"),
+    ("ksp_type", "preonly"),
     ("pc_factor_mat_solver_type", "mumps"),
     // In two dimensions approximate minimum degree orders fastest and fills hardly more.
     ("mat_mumps_icntl_7", "0"),
+];
+
+/// With a preconditioner that does not factorise exactly.
+const ITERATIVE_DEFAULTS: &[(&str, &str)] = &[
+    // GMRES stagnates with most of them, see docs/hard-use.md.
+    ("ksp_type", "bcgs"),
+    ("ksp_max_it", "1000"),
 ];
 
 /// The direct solver of the condensed system.
@@ -75,6 +85,7 @@ const CHOOSE_WHOLE: &[&str] = &[condensed!("ksp_type"), condensed!("pc_type")];
 pub(super) fn is_default(name: &str, value: Option<&str>) -> bool {
     PETSC_DEFAULTS
         .iter()
+        .chain(ITERATIVE_DEFAULTS)
         .chain(&[(PACKAGE, DEFAULT_PACKAGE)])
         .chain(PACKAGE_DEFAULTS)
         .chain(WITHOUT_MUMPS)
@@ -188,8 +199,11 @@ impl LinearSolve {
 /// defaults of what is chosen.
 fn choose(comm: &SimpleCommunicator) -> petsc::Result<Option<SolverChoice>> {
     let mumps = petsc::has_external_package("mumps")?;
-    let other_solver = options::get("snes_type")?.is_some_and(|given| given != SOLVER);
-    if options::is_given(LEFT_TO_PETSC)? || other_solver {
+    if left_to_petsc()? {
+        if value(LEFT_TO_PETSC)?.is_some_and(|given| given != DIRECT) {
+            set_defaults(ITERATIVE_DEFAULTS)?;
+            return Ok(None);
+        }
         let about_mumps =
             |(name, value): &(&str, &str)| name.contains("mumps") || *value == "mumps";
         let usable = PETSC_DEFAULTS
@@ -219,6 +233,12 @@ fn choose(comm: &SimpleCommunicator) -> petsc::Result<Option<SolverChoice>> {
         method,
         options_prefix: condensed!(""),
     }))
+}
+
+/// Whether the options leave the linear systems to PETSc.
+pub(super) fn left_to_petsc() -> petsc::Result<bool> {
+    let other_solver = value("snes_type")?.is_some_and(|given| given != SOLVER);
+    Ok(options::is_given(LEFT_TO_PETSC)? || other_solver)
 }
 
 /// Where the user has not chosen.

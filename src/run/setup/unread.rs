@@ -1,7 +1,10 @@
 //! Options of PETSc's that would break the run, and options nobody read: ours are read first, so that a mistyped one is
 //! found before the run; what PETSc did not read is known after it.
 
-use super::{defaults, linear};
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use super::{defaults, forbidden, linear};
 use crate::case::{Case, CaseError, Dynamics, check_unused};
 use crate::run::error::RunError;
 
@@ -76,7 +79,10 @@ const fn stepper(dynamics: Dynamics) -> Reserved {
 ///
 /// # Errors
 /// Which one, why, and what to do.
-pub(in crate::run) fn refuse_bad_options(case: &Case) -> Result<(), RunError> {
+pub(in crate::run) fn refuse_bad_options(
+    case: &Case,
+    comm: &SimpleCommunicator,
+) -> Result<(), RunError> {
     let stepper = stepper(case.loading.dynamics);
     for reserved in RESERVED.iter().chain([&stepper]) {
         if let Some(given) = petsc::options::get(reserved.option)?
@@ -92,6 +98,7 @@ pub(in crate::run) fn refuse_bad_options(case: &Case) -> Result<(), RunError> {
             .into());
         }
     }
+    forbidden::refuse(comm.size())?;
     let (errors, _) = check_unused(&petsc::options::unused()?);
     errors
         .into_iter()
