@@ -8,11 +8,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::system::Measures;
+use crate::system::{Measures, Work};
 
 /// Below this force (N) imbalance is measured against it instead of the force itself: at the first
 /// touch any residual would be large against nothing.
 pub(crate) const LEAST_FORCE: f64 = 1.0;
+
+/// Below this work (mJ) likewise.
+const LEAST_WORK: f64 = 1.0;
 
 /// How an accepted step came about.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +43,8 @@ pub struct Step<'a> {
     pub measures: &'a Measures,
     /// Work of the punch since the start, mJ.
     pub external_work: f64,
+    /// Where it went since the start, by the same rule, mJ.
+    pub work: &'a Work,
 }
 
 impl Step<'_> {
@@ -48,13 +53,19 @@ impl Step<'_> {
         let measures = self.measures;
         measures.strain_energy
             + measures.plastic_dissipation
-            + measures.contact_energy
+            + measures.contact_energy()
             + measures.kinetic_energy
     }
 
     fn energy_error(&self) -> f64 {
         let (work, held) = (self.external_work, self.held_energy());
         (work - held) / work.abs().max(held)
+    }
+
+    /// Work of the punch less that of the forces in the sheet, on it and between it and the tools.
+    fn work_error(&self) -> f64 {
+        let (work, taken) = (self.external_work, self.work.total());
+        (work - taken) / work.abs().max(taken.abs()).max(LEAST_WORK)
     }
 
     fn balance_error(&self) -> f64 {
@@ -145,7 +156,7 @@ columns! {
     /// Plastic work since the start, mJ.
     plastic_dissipation_mJ: f64 = |step| step.measures.plastic_dissipation;
     /// Energy stored in the compliance of the contact surface, and work of friction since the start, mJ.
-    contact_energy_mJ: f64 = |step| step.measures.contact_energy;
+    contact_energy_mJ: f64 = |step| step.measures.contact_energy();
     /// Work of the punch since the start, mJ: the trapezoidal sum of its force over its travel.
     external_work_mJ: f64 = |step| step.external_work;
     /// Work of the punch less the four energies, as a share of the larger of the two: an error of second order in the step.
@@ -167,6 +178,20 @@ columns! {
     refused_solves: u32 = |step| step.effort.refused_solves;
     /// Largest product of contact force and open gap of a contact point, mJ; it is 0 where complementarity holds.
     max_complementarity_mJ: f64 = |step| step.measures.max_complementarity, worst: f64::abs;
+    /// Work of friction since the start, mJ.
+    friction_work_mJ: f64 = |step| step.measures.friction_work;
+    /// Energy stored in the compliance of the contact surface, mJ.
+    compliance_energy_mJ: f64 = |step| step.measures.compliance_energy;
+    /// Work of the internal forces since the start, mJ, summed as that of the punch.
+    internal_work_mJ: f64 = |step| step.work.internal;
+    /// Work of the contact and friction forces on what the sheet moves against the tools since the start, mJ, summed likewise.
+    contact_work_mJ: f64 = |step| step.work.contact;
+    /// Work of the inertia forces since the start, mJ, summed likewise.
+    inertia_work_mJ: f64 = |step| step.work.inertia;
+    /// Work of the inertia forces less the kinetic energy, mJ: what the time integration has dissipated.
+    integrator_dissipation_mJ: f64 = |step| step.work.inertia - step.measures.kinetic_energy;
+    /// Work of the punch less those of internal, contact and inertia forces, as a share of it (at least 1 mJ): what the solver left over.
+    work_error: f64 = |step| step.work_error(), worst: f64::abs;
 }
 
 /// The page docs/history.md; a test keeps the file equal to it.

@@ -9,7 +9,7 @@ use mpi::traits::CommunicatorCollectives;
 
 use crate::output::StepRecord;
 use crate::output::record::Step;
-use crate::system::Measures;
+use crate::system::{Measures, Work};
 
 pub(super) use crate::output::record::LEAST_FORCE;
 pub use crate::output::record::StepEffort;
@@ -49,12 +49,16 @@ impl Spent {
     }
 }
 
-/// The work of the punch, and what it is summed from.
+/// Numbers a ledger remembers.
+pub(super) const LEDGER_NUMBERS: usize = 6;
+
+/// The work of the punch and where it went, and what they are summed from.
 #[derive(Clone, Debug, Default)]
 pub struct Ledger {
     depth: f64,
     force: f64,
     external_work: f64,
+    work: Work,
 }
 
 impl Ledger {
@@ -63,35 +67,50 @@ impl Ledger {
         self.force
     }
 
-    /// What the ledger remembers: depth (mm), force (N) and work of the punch (mJ).
-    pub(super) fn memory(&self) -> [f64; 3] {
+    /// What the ledger remembers: depth (mm), force (N) and work of the punch, and of internal, inertia and contact
+    /// forces (mJ).
+    pub(super) fn memory(&self) -> [f64; LEDGER_NUMBERS] {
         let Self {
             depth,
             force,
             external_work,
+            work:
+                Work {
+                    internal,
+                    inertia,
+                    contact,
+                },
         } = *self;
-        [depth, force, external_work]
+        [depth, force, external_work, internal, inertia, contact]
     }
 
     /// Goes on with the memory of another ledger.
-    pub(super) fn recall(&mut self, [depth, force, external_work]: [f64; 3]) {
+    pub(super) fn recall(&mut self, memory: [f64; LEDGER_NUMBERS]) {
+        let [depth, force, external_work, internal, inertia, contact] = memory;
         *self = Self {
             depth,
             force,
             external_work,
+            work: Work {
+                internal,
+                inertia,
+                contact,
+            },
         };
     }
 
-    /// The row of an accepted step. The punch's work is the trapezoidal sum of its force over its
+    /// The row of an accepted step and its `work`. The punch's work is the trapezoidal sum of its force over its
     /// travel: second order in the step.
-    pub fn record(&mut self, effort: &StepEffort, measures: &Measures) -> StepRecord {
+    pub fn record(&mut self, effort: &StepEffort, measures: &Measures, work: &Work) -> StepRecord {
         let force = measures.punch_force;
         self.external_work += 0.5 * (self.force + force) * (effort.depth - self.depth);
         (self.force, self.depth) = (force, effort.depth);
+        self.work = self.work.and(*work);
         StepRecord::of(&Step {
             effort,
             measures,
             external_work: self.external_work,
+            work: &self.work,
         })
     }
 }

@@ -31,8 +31,10 @@ pub struct Measures {
     pub strain_energy: f64,
     /// Plastic work since the start, mJ.
     pub plastic_dissipation: f64,
-    /// Work taken by the compliance of contact and by friction, mJ.
-    pub contact_energy: f64,
+    /// Work of friction since the start, mJ.
+    pub friction_work: f64,
+    /// Energy stored in the compliance of contact, mJ.
+    pub compliance_energy: f64,
     /// Contact points that carry a force, in the half model.
     pub active_points: usize,
     /// Displacement of point A of the sheet in y, mm.
@@ -65,6 +67,13 @@ pub(super) struct PartialMeasures {
     maxima: Maxima,
 }
 
+impl Measures {
+    /// Work taken by friction and by the compliance of contact, mJ.
+    pub fn contact_energy(&self) -> f64 {
+        self.friction_work + self.compliance_energy
+    }
+}
+
 impl Subdomain {
     /// This rank's contribution at time `t` (ms), with unknowns `u`, velocities `v` and
     /// accelerations `a` (local). The history must be that of `u`.
@@ -78,7 +87,7 @@ impl Subdomain {
     ) -> Result<PartialMeasures, ElementFailure> {
         let mut partial = PartialMeasures {
             sums: Sums {
-                contact_energy: history.friction_work,
+                friction_work: history.friction_work,
                 ..Sums::default()
             },
             maxima: Maxima::NONE,
@@ -106,7 +115,7 @@ impl Subdomain {
                 SurfaceSide::Top => sums.punch_force -= upward,
                 SurfaceSide::Bottom => sums.die_force += upward,
             }
-            sums.contact_energy += 0.5 * force * contact.law.compliance * u[m];
+            sums.compliance_energy += 0.5 * force * contact.law.compliance * u[m];
             if gap <= 0.0 && force > 0.0 {
                 sums.active_points += 1.0;
             }
@@ -205,7 +214,8 @@ impl PartialMeasures {
             kinetic_energy: whole_sheet * sums.kinetic_energy,
             strain_energy: whole_sheet * sums.strain_energy,
             plastic_dissipation: whole_sheet * sums.plastic_dissipation,
-            contact_energy: whole_sheet * sums.contact_energy,
+            friction_work: whole_sheet * sums.friction_work,
+            compliance_energy: whole_sheet * sums.compliance_energy,
             active_points: sums.active_points as usize,
             point_a_displacement: sums.point_a_displacement,
             point_a_gap: sums.point_a_gap,

@@ -27,6 +27,7 @@ mod subdomain;
 mod subdomain_size;
 mod substructures;
 mod tangent;
+mod work;
 
 use std::cell::RefCell;
 
@@ -52,6 +53,7 @@ pub use snapshot::Snapshot;
 pub use subdomain::Subdomain;
 pub use subdomain_size::SubdomainSize;
 pub use tangent::JacobianEntries;
+pub use work::{AcceptedState, Work};
 
 use crate::contact::ContactState;
 use crate::mesh::Partition;

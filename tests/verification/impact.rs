@@ -66,7 +66,7 @@ fn impact(world: &SimpleCommunicator, elements: usize) -> Result<Outcome> {
         Ok(Watched {
             pressure: points.iter().map(|p| p.pressure).sum::<f64>() / points.len() as f64,
             velocity: mean,
-            energy: measures.kinetic_energy + measures.strain_energy + measures.contact_energy,
+            energy: measures.kinetic_energy + measures.strain_energy + measures.contact_energy(),
         })
     })?;
     let exact_pressure = DENSITY * wave_speed * SPEED;

@@ -114,7 +114,7 @@ fn cycle(world: &SimpleCommunicator) -> Result<Answer> {
         ),
         Row::relative(
             "work of friction and of the contact compliance, mJ per mm",
-            statics.measures()?.contact_energy,
+            statics.measures()?.contact_energy(),
             work,
             1e-9,
             SOURCE,

@@ -8,7 +8,7 @@ use crate::output::OutputError;
 use crate::output::atomic::sync;
 
 /// The format of all files of a checkpoint together. Another one is refused.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
 pub(super) const MANIFEST: &str = "manifest.txt";
 pub(super) const TITLE: &str = "ssnp155 checkpoint, format ";
 pub(super) const LAST_LINE: &str = "checksum ";

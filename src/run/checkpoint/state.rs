@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::output::{Arrays, OutputError};
-use crate::run::ledger::Counts;
+use crate::run::ledger::{Counts, LEDGER_NUMBERS};
 use crate::run::springback::Springback;
 use crate::system::Snapshot;
 
@@ -26,11 +26,13 @@ pub(in crate::run) struct RunState {
     pub velocity: Vec<f64>,
     /// Of the nodes, as the time stepper has it, mm/ms²; empty in statics.
     pub acceleration: Vec<f64>,
+    /// Likewise, the one in the equations of the last step, mm/ms².
+    pub stage_acceleration: Vec<f64>,
     pub snapshot: Snapshot,
     /// Step the control wants, ms, and steps without growth to come.
     pub step_control: (f64, usize),
-    /// Depth (mm), force (N) and work of the punch (mJ) in the ledger.
-    pub ledger: [f64; 3],
+    /// What the ledger remembers.
+    pub ledger: [f64; LEDGER_NUMBERS],
     pub counts: Counts,
     pub springbacks: Vec<Springback>,
     /// Time of processors and on the clock so far, s.
@@ -59,6 +61,7 @@ impl RunState {
         to.put("last_dt", last_dt)?;
         to.put("velocity", &self.velocity)?;
         to.put("acceleration", &self.acceleration)?;
+        to.put("stage_acceleration", &self.stage_acceleration)?;
         to.put("gauss_points", &self.snapshot.gauss_points)?;
         to.put("contact_points", &self.snapshot.contact_points)?;
         to.put("friction_work", &self.snapshot.friction_work)?;
@@ -106,6 +109,7 @@ impl RunState {
             before,
             velocity: from.get("velocity")?,
             acceleration: from.get("acceleration")?,
+            stage_acceleration: from.get("stage_acceleration")?,
             snapshot: Snapshot {
                 gauss_points: from.get("gauss_points")?,
                 contact_points: from.get("contact_points")?,

@@ -7,7 +7,7 @@ use petsc::Session;
 
 use super::angles::{NamedAngle, angles};
 use super::inputs;
-use super::judgement::{BALANCE_LIMIT, CONE_LIMIT, TENSION_LIMIT};
+use super::judgement::{BALANCE_LIMIT, CONE_LIMIT, TENSION_LIMIT, WORK_LIMIT};
 use crate::case::{Case, CaseError};
 use crate::output::VerdictTable;
 use crate::output::summary::{Counts, Provenance, Status, Summary, Timing, worst_values};
@@ -65,6 +65,7 @@ pub(super) fn summarise(
             (text("tensile_force"), TENSION_LIMIT),
             (text("balance"), BALANCE_LIMIT),
             (text("cone"), CONE_LIMIT),
+            (text("work"), WORK_LIMIT),
         ]),
         worst: worst_values(records),
         verdicts,

@@ -4,7 +4,7 @@ use petsc::{Alpha2State, Vector, VectorRef};
 
 use crate::run::ledger::{Counts, Ledger};
 use crate::run::springback::Springback;
-use crate::system::{History, System};
+use crate::system::{AcceptedState, History, System, SystemError, Work};
 use crate::tool::PunchMotion;
 
 /// Everything the next step depends on, but for the control of its length.
@@ -18,6 +18,8 @@ pub(in crate::run) struct Accepted {
     pub before: Option<Before>,
     /// Velocity and acceleration; none in statics.
     pub rates: Option<Alpha2State>,
+    /// The acceleration in the equations of the last step; none in statics and at the start.
+    pub stage_acceleration: Option<Vector>,
     pub ledger: Ledger,
     pub counts: Counts,
     pub springbacks: Vec<Springback>,
@@ -38,6 +40,7 @@ impl Accepted {
             history,
             before: None,
             rates: None,
+            stage_acceleration: None,
             ledger: Ledger::default(),
             counts: Counts::default(),
             springbacks: Vec::new(),
@@ -55,9 +58,44 @@ impl Accepted {
     ) -> petsc::Result<()> {
         let unknowns = std::mem::replace(&mut self.unknowns, solution.to_owned()?);
         self.before = (!turned).then_some(Before { unknowns, dt });
+        self.stage_acceleration = match &self.rates {
+            Some(rates) => Some(rates.stage_acceleration().to_owned()?),
+            None => None,
+        };
         self.time = t;
         self.counts.steps += 1;
         Ok(())
+    }
+
+    /// Work of the step that has just led to the solution at time `t` (ms) with this history. The rates are those at its
+    /// end. Collective.
+    pub fn work_of_step(
+        &self,
+        system: &System,
+        history: &History,
+        t: f64,
+        solution: &VectorRef,
+    ) -> Result<Work, SystemError> {
+        let mut rest = system.vector()?;
+        rest.set_all(0.0)?;
+        let from = AcceptedState {
+            history: &self.history,
+            t: self.time,
+            // The multipliers of the first guess are no forces.
+            u: if self.counts.steps == 0 {
+                &rest
+            } else {
+                &self.unknowns
+            },
+            acceleration: self.stage_acceleration.as_deref(),
+        };
+        let to = AcceptedState {
+            history,
+            t,
+            u: solution,
+            acceleration: self.rates.as_ref().map(Alpha2State::stage_acceleration),
+        };
+        system.work(&from, &to)
     }
 
     /// The largest displacement that a step of length `dt` (ms) to time `t` is expected to bring, mm: that of the

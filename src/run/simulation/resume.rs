@@ -74,7 +74,7 @@ impl Simulation {
             values.truncate(nodes);
             Ok(values)
         };
-        let (velocity, acceleration) = match &accepted.rates {
+        let (velocity, acceleration, stage_acceleration) = match &accepted.rates {
             Some(rates) => {
                 if lowest_failing(system.comm(), !rates.is_exact()).is_some() {
                     return Err(
@@ -83,9 +83,13 @@ impl Simulation {
                             .into(),
                     );
                 }
-                (of_nodes(rates.velocity())?, of_nodes(rates.acceleration())?)
+                (
+                    of_nodes(rates.velocity())?,
+                    of_nodes(rates.acceleration())?,
+                    of_nodes(rates.stage_acceleration())?,
+                )
             }
-            None => (Vec::new(), Vec::new()),
+            None => (Vec::new(), Vec::new(), Vec::new()),
         };
         let before = match &accepted.before {
             Some(before) => Some((system.in_mesh_order(&before.unknowns)?, before.dt)),
@@ -97,6 +101,7 @@ impl Simulation {
             before,
             velocity,
             acceleration,
+            stage_acceleration,
             snapshot: Snapshot::of(system, &accepted.history),
             step_control: progress.control.memory(),
             ledger: accepted.ledger.memory(),
@@ -121,7 +126,7 @@ impl Simulation {
         };
         let step = i32::try_from(state.counts.steps).map_err(CallbackError::from)?;
         let has_rates = self.progress.borrow().accepted.rates.is_some();
-        let rates = if has_rates {
+        let (rates, stage_acceleration) = if has_rates {
             let rate = |of_nodes: &[f64]| {
                 let mut values = of_nodes.to_vec();
                 values.resize(state.unknowns.len(), 0.0);
@@ -129,12 +134,13 @@ impl Simulation {
             };
             let (velocity, acceleration) = (rate(&state.velocity)?, rate(&state.acceleration)?);
             ts.alpha2_set_state(&unknowns, &velocity, &acceleration, state.time, step)?;
-            Some(Alpha2State::new(ts, &acceleration)?)
+            let stage = rate(&state.stage_acceleration)?;
+            (Some(Alpha2State::new(ts, &acceleration)?), Some(stage))
         } else {
             ts.set_solution(&unknowns)?;
             ts.set_time(state.time)?;
             ts.set_step_number(step)?;
-            None
+            (None, None)
         };
         let Progress {
             accepted, control, ..
@@ -145,6 +151,7 @@ impl Simulation {
         accepted.unknowns = unknowns;
         accepted.before = before;
         accepted.rates = rates;
+        accepted.stage_acceleration = stage_acceleration;
         accepted.counts = state.counts;
         accepted.springbacks.clone_from(&state.springbacks);
         Ok(())

@@ -51,10 +51,14 @@ impl Simulation {
         let (solution, system) = (ts.solution()?, &self.settings.system);
         let progress = &mut *self.progress.borrow_mut();
         let accepted = &mut progress.accepted;
-        accepted.history = system.advance(&accepted.history, t, solution)?;
-        let measures = match &mut accepted.rates {
+        let history = system.advance(&accepted.history, t, solution)?;
+        if let Some(rates) = &mut accepted.rates {
+            rates.accepted(ts)?;
+        }
+        let work = accepted.work_of_step(system, &history, t, solution)?;
+        accepted.history = history;
+        let measures = match &accepted.rates {
             Some(rates) => {
-                rates.accepted(ts)?;
                 let rates = Rates {
                     velocity: rates.velocity(),
                     acceleration: rates.stage_acceleration(),
@@ -72,7 +76,7 @@ impl Simulation {
             residual_norm: ts.snes()?.function_norm()?,
             refused_solves: u32::try_from(refused)?,
         };
-        let record = accepted.ledger.record(&effort, &measures);
+        let record = accepted.ledger.record(&effort, &measures, &work);
         progress.recorder.step(&record)?;
         let turned = progress.control.is_at(t, self.settings.motion.time_load);
         accepted.move_on(solution, t, dt, turned)?;

@@ -65,13 +65,14 @@ function makeCharts() {
   document.getElementById("force-caption").textContent = reference.curve.length
     ? "Beside it code_aster's curve of the same loading without friction: rigid contact at the nodes, hence its saw-tooth. The force near full stroke is steep and varies between solvers."
     : reference.points.length ? "Beside it the reference values of this case; their sources are in the table above." : "Nobody else's values are known for this case.";
-  const energies = [["work of the punch", "external_work_mJ", "#1b2430"], ["plastic", "plastic_dissipation_mJ", "#c2571a"], ["elastic", "strain_energy_mJ", OURS], ["contact and friction", "contact_energy_mJ", "#1b7442"], ["kinetic", "kinetic_energy_mJ", "#8a4fa3"]];
+  const energies = [["work of the punch", "external_work_mJ", "#1b2430"], ["plastic", "plastic_dissipation_mJ", "#c2571a"], ["elastic", "strain_energy_mJ", OURS], ["friction", "friction_work_mJ", "#1b7442"], ["compliance of the contact", "compliance_energy_mJ", "#8b95a1"], ["kinetic", "kinetic_energy_mJ", "#8a4fa3"]];
   new Chart("energies", {
     title: "Energies against the travel of the punch", xLabel: "travel of the punch, mm", yLabel: "energy of the whole sheet, mJ", height: 340, turn: turnTravel, xRange: travelRange,
     series: energies.map(([name, key, color], k) => ({ name, color, width: k ? 1.8 : 2.4, dash: k ? "" : "6 3", x: travels, y: column(key), time: times })),
     tip: (s, i) => `${s.name}: ${show(s.y[i])} mJ at ${fixed(s.x[i], 2)} mm`,
     at: t => ({ x: travel(t) }),
   });
+  makeBalanceCharts();
   const refused = column("refused_solves"), where = refused.map((n, i) => n > 0 ? i : -1).filter(i => i >= 0), pick = list => where.map(i => list[i]);
   const marks = list => ({ name: "after refused solves", color: PUNCH_MARK, kind: "marks", radius: 3.4, x: pick(travels), y: pick(list), time: pick(times), of: pick(refused) });
   const tip = unit => (s, i) => `${fixed(s.x[i], 2)} mm: ${show(s.y[i])} ${unit}${s.of ? `, ${s.of[i]} refused before` : ""}`;
@@ -84,6 +85,29 @@ function makeCharts() {
     series: [{ name: "iterations", color: OURS, kind: "stems", x: travels, y: newton, time: times }, marks(newton)], at: (t, row) => ({ x: travel(t), y: row >= 0 ? newton[row] : NaN }) });
   pressureChart = new Chart("pressure", { title: "Contact pressure along the sheet", xLabel: "place along the undeformed sheet from its middle, mm", yLabel: "pressure, MPa", height: 250, xRange: [0, model.half_length], series: [],
     tip: (s, i) => `${fixed(s.x[i], 3)} mm: ${fixed(Math.abs(s.y[i]), 1)} MPa`, yTick: v => show(Math.abs(v)) });
+}
+
+// How far the run is from statics, and how well the balance of energy is closed: shares, so on a logarithmic axis.
+function makeBalanceCharts() {
+  let most = 0;
+  const largestForce = column("force_N").map(force => most = Math.max(most, Math.abs(force)));
+  const share = (part, of) => part.map((value, i) => of[i] > 0 ? Math.abs(value) / of[i] : NaN);
+  const work = column("external_work_mJ"), dissipated = column("integrator_dissipation_mJ");
+  const chart = (id, title, series) => new Chart(id, {
+    title, xLabel: "travel of the punch, mm", yLabel: "", yTick: v => show(v).replace(/^1 · /, ""), log: true, height: 270, turn: turnTravel, xRange: travelRange,
+    series: series.map(([name, color, y]) => ({ name, color, width: 1.8, x: travels, y, time: times })),
+    tip: (s, i) => `${s.name}: ${show(s.y[i], 2)} at ${fixed(s.x[i], 2)} mm`,
+    at: t => ({ x: travel(t) }),
+  });
+  chart("quasi-static", "Shares of kinetic energy and inertia against the travel of the punch", [
+    ["kinetic energy, of the elastic energy", "#8a4fa3", share(column("kinetic_energy_mJ"), column("strain_energy_mJ"))],
+    ["inertia force, of the largest punch force so far", OURS, share(column("inertia_N"), largestForce)],
+  ]);
+  chart("balance", "Errors of the balance of energy against the travel of the punch", [
+    ["work without a taker", "#1b7442", column("work_error").map(Math.abs)],
+    ["dissipated by the time integration, of the work", "#8a4fa3", share(dissipated, work)],
+    ["work less energies: the step's length", THEIRS, column("energy_error").map(Math.abs)],
+  ]);
 }
 
 function play() {

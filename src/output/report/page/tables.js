@@ -40,7 +40,8 @@ const CERTIFICATES = {
   max_complementarity_mJ: ["Complementarity: force times open gap of a point", "mJ", null],
   cone_violation: ["Friction beyond its cone, of the largest", "", "cone"],
   balance_error: ["Punch force less die force and inertia, of the larger", "", "balance"],
-  energy_error: ["Energy balance, of the largest energy", "", null],
+  work_error: ["Work of the punch less internal, contact and inertia work", "", "work"],
+  energy_error: ["Work of the punch less the energies, of the larger", "", null],
   residual_norm_mm: ["Residual where Newton stopped", "mm", "newton_residual_mm"],
 };
 
