@@ -22,7 +22,7 @@ echo "test: the fields, read back by VTK"
 echo "test: the report in a browser, of this run and of one that fails"
 .venv/bin/python scripts/check_report.py results
 "${CARGO_TARGET_DIR:-target}/release/ssnp155" -sheet_nx 40 -sheet_ny 2 -newton_max_iterations 3 -dt_min 0.1 \
-    -output_dir results/failed >/dev/null && exit 1
+    -overwrite -output_dir results/failed >/dev/null && exit 1
 .venv/bin/python scripts/check_report.py results/failed
 
 echo "test: cargo test"
