@@ -25,13 +25,14 @@ Tolerance: the kinks of the stress over the thickness, and 80 steps of first ord
     run: strip,
 };
 
-/// Moment per width at the curvature whose surface strain is `surface`, by the midpoint rule.
-fn moment(constants: &Constants, surface: f64) -> f64 {
+/// Moment per width of a strip of 1 mm at the curvature whose surface strain is `surface`, by the midpoint rule, with strain
+/// steps of at most `step`.
+pub fn moment(constants: &Constants, surface: f64, step: f64) -> f64 {
     const FIBRES: usize = 2000;
     let half = 0.5 * THICKNESS;
     let height = |k: usize| half * (k as f64 + 0.5) / FIBRES as f64;
     let strains: Vec<f64> = (0..FIBRES).map(|k| surface * height(k) / half).collect();
-    let stresses = constants.plane_strain_tension(&strains, 1e-5 / STIFFER);
+    let stresses = constants.plane_strain_tension(&strains, step);
     let sum: f64 = stresses
         .iter()
         .enumerate()
@@ -46,7 +47,7 @@ fn strip(world: &SimpleCommunicator) -> Result<Answer> {
     let stiffness = constants.plane_modulus() * THICKNESS.powi(3) / 12.0;
     let curvature_of = |surface: f64| surface / (0.5 * THICKNESS);
     let marks = [0.003, 0.006, 0.01, 0.02].map(|surface| surface / STIFFER);
-    let references = marks.map(|surface| moment(&constants, surface));
+    let references = marks.map(|surface| moment(&constants, surface, 1e-5 / STIFFER));
     let last = curvature_of(marks[3]);
     let released = last - references[3] / stiffness;
     let mut rows = Vec::new();

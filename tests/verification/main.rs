@@ -18,10 +18,12 @@ mod material;
 mod motion;
 mod patch;
 mod ranks;
+mod ring;
 mod row;
 mod shear;
 mod sliding;
 mod statics;
+mod strip;
 mod svg;
 mod vibration;
 
@@ -46,7 +48,9 @@ const CASES: &[Case] = &[
     beam::CANTILEVER,
     beam::ELASTICA,
     bending::STRIP,
+    strip::RELEASED,
     flat::PRESSURE,
+    ring::PRESSED,
     hertz::CYLINDER,
     sliding::RIGID,
     sliding::DEFORMABLE,
