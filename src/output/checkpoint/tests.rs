@@ -128,9 +128,10 @@ fn another_format_is_said_so() {
     )
     .unwrap();
     let error = verify(&made).unwrap_err().to_string();
-    assert!(
-        error.contains("it has format 2, and this program reads format 1"),
-        "{error}"
+    let expected = format!(
+        "it has format {}, and this program reads format {FORMAT}",
+        FORMAT + 1
     );
+    assert!(error.contains(&expected), "{error}");
     fs::remove_dir_all(folder).unwrap();
 }

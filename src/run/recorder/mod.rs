@@ -175,14 +175,19 @@ impl Recorder {
     /// Takes an accepted step. Collective.
     ///
     /// # Errors
-    /// If the history cannot be written.
-    pub fn step(&mut self, record: &StepRecord) -> Result<(), OutputError> {
+    /// If the history, which rank 0 writes, cannot be written; the same on every rank.
+    pub fn step(
+        &mut self,
+        record: &StepRecord,
+        comm: &impl Communicator,
+    ) -> Result<(), OutputError> {
         self.monitor.step(record);
         self.records.push(*record);
-        match &mut self.history {
+        let mine = match &mut self.history {
             Some(history) => history.append(record),
             None => Ok(()),
-        }
+        };
+        agree(comm, mine)
     }
 
     /// Whether the fields of the last step are due; the ends of loading and unloading always are.

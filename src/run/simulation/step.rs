@@ -77,7 +77,7 @@ impl Simulation {
             refused_solves: u32::try_from(refused)?,
         };
         let record = accepted.ledger.record(&effort, &measures, &work);
-        progress.recorder.step(&record)?;
+        progress.recorder.step(&record, system.comm())?;
         let turned = progress.control.is_at(t, self.settings.motion.time_load);
         accepted.move_on(solution, t, dt, turned)?;
         Ok(record)
