@@ -73,10 +73,13 @@ fn a_run_killed_again_and_again_comes_to_the_same_end() {
         child.kill().unwrap();
         child.wait().unwrap();
         kills += 1;
-        // Not a word of an end that there was not.
-        assert!(!killed.join("summary.json").exists());
         for checkpoint in checkpoints(&killed) {
             ssnp155::output::checkpoint::verify(&checkpoint).unwrap();
+        }
+        // Not a word of an end that there was not: a summary is there only if the kill came while the last figures were
+        // drawn, and then everything below must hold.
+        if killed.join("summary.json").exists() {
+            break;
         }
     }
     assert!(kills > 0);
