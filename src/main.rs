@@ -15,8 +15,8 @@ use ssnp155::case::{
 use ssnp155::ranks::lowest_failing;
 use ssnp155::run::{Ending, conclude, simulate};
 
-/// PETSc's option against its own signal handlers.
-const NO_HANDLERS: &str = "-no_signal_handler";
+/// What PETSc is told before the user's options: no signal handlers, and no words about options at its end.
+const PETSC_ARGUMENTS: [&str; 3] = ["-no_signal_handler", "-options_left", "no"];
 /// Exit code of a run that did not finish, or whose verdicts do not hold.
 const NOT_HELD: u8 = 1;
 /// Exit code of a run that was ended on request and can go on.
@@ -67,11 +67,12 @@ fn complain(sentence: impl Display) {
     let _ = writeln!(std::io::stderr(), "ssnp155: {sentence}");
 }
 
-/// Starts PETSc, which reads the options. Its signal handlers would end the run with a traceback where a pipe closes or
+/// Starts PETSc, which reads the options. It would end with words of its own about options that nobody read, of which
+/// the program has said what there is to say. Its signal handlers would end the run with a traceback where a pipe closes or
 /// a terminal goes away, so they stay out unless asked for; the run has handlers of its own.
 fn open_session(args: &[String]) -> Result<Session, String> {
     let (program, given) = args.split_at(1.min(args.len()));
-    let args = [program, &[NO_HANDLERS.to_owned()], given].concat();
+    let args = [program, &PETSC_ARGUMENTS.map(str::to_owned), given].concat();
     Session::with_help(&args, &help_text()).map_err(|error| {
         format!(
             "PETSc refuses its options ({error}); look at the command line, the option files, {ENVIRONMENT} and .petscrc"

@@ -11,6 +11,10 @@ const HARD_ITERATIONS: usize = 20;
 const FACTOR: f64 = 1.5;
 /// Steps without growth after a refused solve.
 const CALM_STEPS: usize = 2;
+/// What steps begin with after an abrupt change of the motion, as a share of what they were.
+const ABRUPT: f64 = 0.2;
+/// A step shorter than planned by more than this share was cut because its solve was refused.
+const AS_PLANNED: f64 = 1e-6;
 /// Two times closer than this share of the whole are the same.
 const SAME_TIME: f64 = 1e-10;
 
@@ -25,6 +29,8 @@ pub struct StepControl {
     /// Times to hit exactly, ascending; the last one ends the run.
     landmarks: Vec<f64>,
     calm: usize,
+    /// Whether the planned step ends where a new part of the sheet touches down.
+    touches_down: bool,
 }
 
 impl StepControl {
@@ -38,6 +44,7 @@ impl StepControl {
             largest,
             landmarks,
             calm: 0,
+            touches_down: false,
         };
         control.planned = control.clip(0.0);
         control
@@ -51,6 +58,7 @@ impl StepControl {
             planned: _,
             largest: _,
             landmarks: _,
+            touches_down: _,
         } = self;
         (*wanted, *calm)
     }
@@ -80,7 +88,7 @@ impl StepControl {
     /// Next step after one of length `dt` to time `t` was accepted with `iterations` iterations; a
     /// `dt` shorter than planned shows that solves were refused.
     pub fn accepted(&mut self, t: f64, dt: f64, iterations: usize) -> f64 {
-        if dt < (1.0 - 1e-6) * self.planned {
+        if self.was_cut(dt) {
             self.wanted = dt;
             self.calm = CALM_STEPS;
         } else if iterations > HARD_ITERATIONS {
@@ -91,8 +99,31 @@ impl StepControl {
             // A step that was clipped to a landmark does not shorten the ones after it.
             self.wanted = self.wanted.max(dt * FACTOR).min(self.largest);
         }
+        self.touches_down = false;
         self.planned = self.clip(t);
         self.planned
+    }
+
+    /// Ends the planned step where a new part of the sheet touches down: after this share of it.
+    pub fn end_at_touchdown(&mut self, share: f64) {
+        self.planned *= share;
+        self.touches_down = true;
+    }
+
+    /// Whether a step of length `dt`, before it is [accepted](Self::accepted), ended where a new part of the sheet has
+    /// touched down.
+    pub fn has_touched_down(&self, dt: f64) -> bool {
+        self.touches_down && !self.was_cut(dt)
+    }
+
+    /// Plans the step after time `t` where the motion changes abruptly: it is shorter than the ones before.
+    pub fn start_anew(&mut self, t: f64) {
+        self.wanted *= ABRUPT;
+        self.planned = self.clip(t);
+    }
+
+    fn was_cut(&self, dt: f64) -> bool {
+        dt < (1.0 - AS_PLANNED) * self.planned
     }
 
     /// The wanted step, shortened so that the next landmark is hit by equal steps.
@@ -164,6 +195,18 @@ mod tests {
         }
         assert_eq!(hit, 3);
         assert!(steps < 125, "{steps} steps");
+    }
+
+    #[test]
+    fn a_touchdown_ends_a_step_and_the_next_ones_are_short() {
+        let mut control = StepControl::new(8.0, 8.0, vec![1000.0]);
+        control.end_at_touchdown(0.25);
+        assert_eq!(control.planned(), 2.0);
+        assert!(control.has_touched_down(2.0) && !control.has_touched_down(0.8));
+        assert_eq!(control.accepted(2.0, 2.0, 6), 8.0);
+        assert!(!control.has_touched_down(2.0));
+        control.start_anew(2.0);
+        assert_eq!(control.planned(), 1.6);
     }
 
     #[test]

@@ -7,7 +7,9 @@
 
 mod condensation;
 mod condensed_solve;
+mod contact_guess;
 mod contact_places;
+mod contact_profile;
 mod contact_samples;
 mod convergence;
 mod error;
@@ -37,6 +39,7 @@ use petsc::log::Event;
 use petsc::{Matrix, Scatter, Vector, VectorRef};
 
 pub use condensed_solve::{CondensedMethod, CondensedSolve, SolverChoice};
+pub use contact_guess::{ContactProfiles, StateAt};
 pub use contact_places::ContactPlace;
 pub use contact_samples::ContactPointSample;
 pub use error::{

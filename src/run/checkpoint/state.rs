@@ -20,7 +20,7 @@ pub(in crate::run) struct RunState {
     pub time: f64,
     /// Displacements, multipliers and gaps.
     pub unknowns: Vec<f64>,
-    /// Those before the last step, and its length (ms); none where the punch turns.
+    /// Those before the last step, and its length (ms); none where the motion changes abruptly.
     pub before: Option<(Vec<f64>, f64)>,
     /// Of the nodes, mm/ms; empty in statics.
     pub velocity: Vec<f64>,

@@ -4,7 +4,7 @@ use petsc::{Alpha2State, Vector, VectorRef};
 
 use crate::run::ledger::{Counts, Ledger};
 use crate::run::springback::Springback;
-use crate::system::{AcceptedState, History, System, SystemError, Work};
+use crate::system::{AcceptedState, History, StateAt, System, SystemError, Work};
 use crate::tool::PunchMotion;
 
 /// Everything the next step depends on, but for the control of its length.
@@ -14,7 +14,7 @@ pub(in crate::run) struct Accepted {
     pub unknowns: Vector,
     /// What the sheet remembers there.
     pub history: History,
-    /// None at the start and where the punch turns.
+    /// None at the start and where the motion changes abruptly.
     pub before: Option<Before>,
     /// Velocity and acceleration; none in statics.
     pub rates: Option<Alpha2State>,
@@ -48,16 +48,16 @@ impl Accepted {
     }
 
     /// Moves on to the solution at time `t` after a step of length `dt` (ms); what was before is forgotten where the
-    /// punch has turned.
+    /// motion changes abruptly.
     pub fn move_on(
         &mut self,
         solution: &VectorRef,
         t: f64,
         dt: f64,
-        turned: bool,
+        abrupt: bool,
     ) -> petsc::Result<()> {
         let unknowns = std::mem::replace(&mut self.unknowns, solution.to_owned()?);
-        self.before = (!turned).then_some(Before { unknowns, dt });
+        self.before = (!abrupt).then_some(Before { unknowns, dt });
         self.stage_acceleration = match &self.rates {
             Some(rates) => Some(rates.stage_acceleration().to_owned()?),
             None => None,
@@ -116,12 +116,12 @@ impl Accepted {
         Ok(punch.max(system.largest_displacement(&moved)? * dt / before.dt))
     }
 
-    /// Moves the first guess of a step of length `dt` (ms) on along the last step: its first `displacements` unknowns
-    /// only, with multipliers, gaps and so the active set as they were.
+    /// Moves the displacements of a first guess on along the last step, for a step of length `dt` (ms); multipliers and
+    /// gaps stay.
     pub fn extrapolate(
         &self,
+        system: &System,
         dt: f64,
-        displacements: usize,
         guess: &mut VectorRef,
     ) -> petsc::Result<()> {
         let Some(before) = &self.before else {
@@ -130,9 +130,60 @@ impl Accepted {
         let ratio = dt / before.dt;
         let (now, before) = (self.unknowns.read()?, before.unknowns.read()?);
         let mut guess = guess.write()?;
-        for i in 0..displacements {
+        for i in 0..system.owned_displacements() {
             guess[i] = now[i] + ratio * (now[i] - before[i]);
         }
         Ok(())
+    }
+
+    /// Sets multipliers and gaps of a first guess at time `t` (ms), `dt` (ms) after this state, whose displacements are
+    /// there already. Collective.
+    pub fn expect_contact(
+        &self,
+        system: &System,
+        dt: f64,
+        t: f64,
+        guess: &mut VectorRef,
+    ) -> petsc::Result<()> {
+        let Some(before) = &self.before else {
+            return Ok(());
+        };
+        let earlier = StateAt {
+            t: self.time - before.dt,
+            u: &before.unknowns,
+        };
+        let profiles = [
+            system.contact_profiles(self.place())?,
+            system.contact_profiles(earlier)?,
+        ];
+        if let [Some(now), Some(earlier)] = &profiles {
+            system.guess_contact([now, earlier], dt / before.dt, t, guess)?;
+        }
+        Ok(())
+    }
+
+    /// After what share of a step of length `dt` (ms) a new part of the sheet touches down, if it goes on moving as in
+    /// the last step. Collective.
+    pub fn touchdown(&self, system: &System, dt: f64) -> petsc::Result<Option<f64>> {
+        if self.before.is_none() {
+            return Ok(None);
+        }
+        let Some(now) = system.contact_profiles(self.place())? else {
+            return Ok(None);
+        };
+        let mut end = self.unknowns.to_owned()?;
+        self.extrapolate(system, dt, &mut end)?;
+        let end = StateAt {
+            t: self.time + dt,
+            u: &end,
+        };
+        system.touchdown(&now, [self.place(), end])
+    }
+
+    fn place(&self) -> StateAt<'_> {
+        StateAt {
+            t: self.time,
+            u: &self.unknowns,
+        }
     }
 }

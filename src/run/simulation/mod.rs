@@ -51,6 +51,8 @@ struct Settings {
     /// Shortest step, ms.
     least_step: f64,
     extrapolate: bool,
+    /// The user has not fixed the steps.
+    free_steps: bool,
     show_iterations: bool,
     spent: Spent,
     /// What a checkpoint says about the case it belongs to.
@@ -102,6 +104,7 @@ impl Simulation {
             most_iterations: stepping.newton_max_iterations,
             least_step: stepping.dt_min,
             extrapolate: stepping.extrapolate,
+            free_steps: stepping.fixed_steps_load == 0 && stepping.fixed_steps_unload == 0,
             show_iterations: case.output.iterations,
             spent,
             identity: identity(case),
@@ -161,9 +164,8 @@ impl Simulation {
                 self.write_fields(0.0, &start, None)?;
             }
         }
-        let progress = &mut *self.progress.borrow_mut();
-        ts.set_time_step(progress.control.planned())?;
-        progress.recorder.begin(resumed);
+        ts.set_time_step(self.plan_step()?)?;
+        self.progress.borrow_mut().recorder.begin(resumed);
         Ok(())
     }
 

@@ -84,9 +84,10 @@ impl Simulation {
     pub(super) fn first_guess(&self, guess: &mut VectorRef) -> Result<(), CallbackError> {
         let progress = &*self.progress.borrow();
         if self.settings.extrapolate && progress.refusals.is_empty() {
-            let displacements = self.settings.system.owned_displacements();
-            let dt = progress.attempt.dt;
-            progress.accepted.extrapolate(dt, displacements, guess)?;
+            let Attempt { dt, time, .. } = progress.attempt;
+            let system = &self.settings.system;
+            progress.accepted.extrapolate(system, dt, guess)?;
+            progress.accepted.expect_contact(system, dt, time, guess)?;
         }
         Ok(())
     }

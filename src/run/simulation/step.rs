@@ -4,9 +4,11 @@
 use petsc::{CallbackError, TsReason, TsRef, VectorRef};
 
 use super::Simulation;
+use super::progress::Progress;
 use crate::output::StepRecord;
 use crate::run::ledger::StepEffort;
 use crate::run::springback::ReleasedSheet;
+use crate::run::step_size::StepControl;
 use crate::system::Rates;
 
 impl Simulation {
@@ -16,20 +18,26 @@ impl Simulation {
             return Ok(());
         }
         let t = ts.time()?;
-        let dt = t - self.progress.borrow().accepted.time;
-        let record = self.accept(ts, t, dt)?;
-        let (next, label, fields_due) = {
+        let (dt, abrupt) = {
+            let progress = self.progress.borrow();
+            let dt = t - progress.accepted.time;
+            (dt, self.is_abrupt(&progress.control, t, dt))
+        };
+        let record = self.accept(ts, t, dt, abrupt)?;
+        let (ended, label, fields_due) = {
             let progress = &mut *self.progress.borrow_mut();
             let control = &mut progress.control;
-            let next = control.accepted(t, dt, record.newton_iterations as usize);
+            control.accepted(t, dt, record.newton_iterations as usize);
+            if abrupt && self.settings.free_steps {
+                control.start_anew(t);
+            }
             let ended = control.is_at(t, control.end());
             let label = if control.is_at(t, self.settings.motion.time_load) {
                 Some("full stroke")
             } else {
                 ended.then_some("end")
             };
-            let next = (!ended).then_some(next);
-            (next, label, progress.recorder.fields_due(label.is_some()))
+            (ended, label, progress.recorder.fields_due(label.is_some()))
         };
         if fields_due {
             self.write_fields(t, ts.solution()?, label)?;
@@ -37,17 +45,41 @@ impl Simulation {
         if label.is_some() {
             self.release_tools(t, ts.solution()?)?;
         }
-        match next {
-            Some(next) => {
-                ts.set_time_step(next)?;
-                self.save_or_stop(ts)
-            }
-            None => Ok(ts.set_converged_reason(TsReason::ConvergedTime)?),
+        if ended {
+            return Ok(ts.set_converged_reason(TsReason::ConvergedTime)?);
         }
+        ts.set_time_step(self.plan_step()?)?;
+        self.save_or_stop(ts)
+    }
+
+    /// Whether the motion changes abruptly at the end of a step of length `dt` to time `t` (ms), so that the step says
+    /// nothing about the next one.
+    fn is_abrupt(&self, control: &StepControl, t: f64, dt: f64) -> bool {
+        control.is_at(t, self.settings.motion.time_load) || control.has_touched_down(dt)
+    }
+
+    /// Length of the next step, ms: it ends where a new part of the sheet touches down. Collective.
+    pub(super) fn plan_step(&self) -> Result<f64, CallbackError> {
+        let Progress {
+            accepted, control, ..
+        } = &mut *self.progress.borrow_mut();
+        if self.settings.free_steps && self.settings.extrapolate {
+            let share = accepted.touchdown(&self.settings.system, control.planned())?;
+            share
+                .into_iter()
+                .for_each(|share| control.end_at_touchdown(share));
+        }
+        Ok(control.planned())
     }
 
     /// Moves the accepted state on to the solution of the time stepper, and writes its row.
-    fn accept(&self, ts: &TsRef, t: f64, dt: f64) -> Result<StepRecord, CallbackError> {
+    fn accept(
+        &self,
+        ts: &TsRef,
+        t: f64,
+        dt: f64,
+        abrupt: bool,
+    ) -> Result<StepRecord, CallbackError> {
         let (solution, system) = (ts.solution()?, &self.settings.system);
         let progress = &mut *self.progress.borrow_mut();
         let accepted = &mut progress.accepted;
@@ -78,8 +110,7 @@ impl Simulation {
         };
         let record = accepted.ledger.record(&effort, &measures, &work);
         progress.recorder.step(&record, system.comm())?;
-        let turned = progress.control.is_at(t, self.settings.motion.time_load);
-        accepted.move_on(solution, t, dt, turned)?;
+        accepted.move_on(solution, t, dt, abrupt)?;
         Ok(record)
     }
 
