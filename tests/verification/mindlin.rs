@@ -21,7 +21,7 @@ pub const SHEARED: Case = Case {
     text: "The block of the Hertz case, whole (200 x 100 mm), pressed on the cylinder of 1000 mm by its base, which is then moved along the cylinder and back at constant pressing force P, coefficient of friction 0.3. \
 Under a shearing force Q the outer contact slips and |x| < c = a √(1 - Q/(μ P)) sticks, with the traction q = μ p₀ (√(1 - x²/a²) - (c/a) √(1 - x²/c²)); on the way back from Q₁, slip of the other sign enters from the ends and a third ellipse of half width a √(1 - (Q₁ - Q)/(2 μ P)) is added. \
 The theory needs normal and tangential forces that do not couple; under a rigid cylinder that is an incompressible block: Dundurs' constant (1 - 2ν)/(2(1 - ν)) is 2e-4 for ν = 0.4999 here (0.24 for aluminium). \
-The elastic slip of friction is 1e-7 mm/MPa, E*/a times that 1 %. Where a zone ends, the traction has infinite slope, which an edge of 1/32 mm cannot follow: points nearer than two edges to an end are left out of comparisons and drawn. \
+The elastic slip of friction is 1e-7 mm/MPa, E*/a times that 1 % (with 1e-8 and 3e-8 Newton's method finds no solution in the first steps of pressing). Where a zone ends, the traction has infinite slope, which an edge of 1/32 mm cannot follow: points nearer than two edges to an end are left out of comparisons and drawn. \
 Stick width and depth are those of an ellipse fitted to what is missing to μ p. Tolerance: 0.5 % for the fit, as for Hertz; an edge for the last point that sticks; 1 % of p₀ for tractions as for Hertz, that is 1 %/μ of μ p₀, and the 1 % of elastic slip. \
 With all points counted, errors at the ends are of the order of √h over a length h: the largest falls with √h, the root of the mean square with h as far as the ends alone make it, so its order between edges of 1/16 and 1/32 mm must lie between 1/2 and 1 (pressing leaves some friction behind where the points close one after the other, which falls more slowly).",
     quick: false,
@@ -265,7 +265,7 @@ fn chart<'a>(theory: &Theory, points: &[Touch]) -> Chart<'a> {
         end: [1.2, 1.0],
         tick: [0.2, 0.2],
         curve: (
-            "Cattaneo and Mindlin, for the same forces",
+            "Cattaneo and Mindlin",
             (0..=600)
                 .map(|i| 1.2 * f64::from(i) / 600.0)
                 .map(|x| [x, theory.traction(x * a)])
