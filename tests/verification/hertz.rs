@@ -27,16 +27,16 @@ Peak and half width are also those of an ellipse fitted to the points. The press
     run: cylinder,
 };
 
-const RADIUS: f64 = 1000.0;
-const SIZE: f64 = 100.0;
+pub const RADIUS: f64 = 1000.0;
+pub const SIZE: f64 = 100.0;
 const COMPLIANCE: f64 = 1e-8;
 /// PETSc's option for the ordering of the direct solver.
-const ORDERING: &str = "condensed_pc_factor_mat_ordering_type";
+pub const ORDERING: &str = "condensed_pc_factor_mat_ordering_type";
 /// Length of an edge in the contact.
-const EDGE: f64 = 1.0 / 32.0;
+pub const EDGE: f64 = 1.0 / 32.0;
 
 /// Ends of elements: `fine` of length `h`, then each longer by `growth` than the one before, to SIZE.
-fn knots(h: f64, fine: usize, growth: f64) -> Vec<f64> {
+pub fn knots(h: f64, fine: usize, growth: f64) -> Vec<f64> {
     let mut knots: Vec<f64> = (0..=fine).map(|i| h * i as f64).collect();
     let (mut length, mut end) = (h, h * fine as f64);
     while end < SIZE {
@@ -52,7 +52,7 @@ fn knots(h: f64, fine: usize, growth: f64) -> Vec<f64> {
     knots
 }
 
-fn between(knots: &[f64], at: f64) -> f64 {
+pub fn between(knots: &[f64], at: f64) -> f64 {
     let i = (at as usize).min(knots.len() - 2);
     knots[i] + (knots[i + 1] - knots[i]) * (at - i as f64)
 }
@@ -176,7 +176,7 @@ fn cylinder(world: &SimpleCommunicator) -> Result<Answer> {
 }
 
 /// Peak and half width of the ellipse that fits best: p² is linear in x².
-fn ellipse(points: &[[f64; 2]]) -> [f64; 2] {
+pub fn ellipse(points: &[[f64; 2]]) -> [f64; 2] {
     let n = points.len() as f64;
     let squares = || points.iter().map(|[x, p]| [x * x, p * p]);
     let mean = [0, 1].map(|k| squares().map(|s| s[k]).sum::<f64>() / n);

@@ -8,6 +8,7 @@
 mod beam;
 mod bending;
 mod convergence;
+mod cook;
 mod document;
 mod drum;
 mod flat;
@@ -15,6 +16,7 @@ mod flow;
 mod hertz;
 mod impact;
 mod material;
+mod mindlin;
 mod motion;
 mod patch;
 mod ranks;
@@ -47,11 +49,14 @@ const CASES: &[Case] = &[
     convergence::MANUFACTURED,
     beam::CANTILEVER,
     beam::ELASTICA,
+    cook::LINEAR,
+    cook::PLASTIC,
     bending::STRIP,
     strip::RELEASED,
     flat::PRESSURE,
     ring::PRESSED,
     hertz::CYLINDER,
+    mindlin::SHEARED,
     sliding::RIGID,
     sliding::DEFORMABLE,
     drum::EYTELWEIN,
