@@ -10,7 +10,6 @@ use super::OutputError;
 use crate::case::Parameter;
 use crate::sensitivity::Slopes;
 
-
 /// One accepted step: its state, and the derivatives by every parameter.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DerivativeRow {

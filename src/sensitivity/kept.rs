@@ -86,9 +86,8 @@ impl Sensitivity {
     /// If a list has another size than this problem's, the same on every rank, or PETSc fails.
     pub fn put_back(&mut self, kept: &Kept) -> Result<(), MeshOrderError> {
         let system = &self.system;
-        let vector = |values: &[f64]| -> Result<Vector, MeshOrderError> {
-            system.from_mesh_order(values)
-        };
+        let vector =
+            |values: &[f64]| -> Result<Vector, MeshOrderError> { system.from_mesh_order(values) };
         for (tracked, kept) in self.tracked.iter_mut().zip(&kept.parameters) {
             tracked.unknowns = vector(&kept.unknowns)?;
             tracked.velocity = vector(&kept.velocity)?;

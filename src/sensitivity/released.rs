@@ -4,10 +4,10 @@ use petsc::VectorRef;
 
 use super::solve::on_reduced_set;
 use super::step::Sensitivity;
+use crate::ranks;
 use crate::system::{
     CondensedSolve, Directions, EvaluationError, History, LocalStep, System, SystemError, Workspace,
 };
-use crate::ranks;
 
 /// Derivatives of a released angle.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -80,8 +80,12 @@ impl Sensitivity {
         let mut work = Workspace::new(system.local());
         for (tracked, angle) in self.tracked.iter().zip(angles) {
             let variation = tracked.variation.released(system);
+            // Contact unknowns come last.
+            let mut guess = self.system.local_values(&tracked.unknowns)?;
+            guess.truncate(u.len());
             let along = Directions {
                 history: &tracked.history.without_contact(),
+                u: &guess,
                 a: &still,
             };
             let mut shares = still.clone();
@@ -89,13 +93,14 @@ impl Sensitivity {
             if ranks::lowest_failing(comm, evaluated.is_err()).is_some() {
                 continue;
             }
-            let loaded = self.system.local_values(&tracked.unknowns)?;
-            system.local().hold(&loaded, &mut shares);
             let mut right_side = system.vector()?;
             system.sum_of_shares(&shares, &mut right_side)?;
             right_side.scale(-1.0)?;
-            let unknowns = on_reduced_set(system, state.solve, &[], &right_side)?;
-            let du = system.local_values(&unknowns)?;
+            let correction = on_reduced_set(system, state.solve, &[], &right_side)?;
+            let mut du = system.local_values(&correction)?;
+            du.iter_mut()
+                .zip(&guess)
+                .for_each(|(du, guess)| *du += guess);
             [_, *angle] = variation.shape_slopes(&u, &du).over_ranks(comm);
         }
         Ok(())

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use cpu_time::ProcessTime;
 use mpi::traits::Communicator;
-use petsc::{AlphaParameters, CallbackError, Vector, VectorRef};
+use petsc::{AlphaParameters, CallbackError, VectorRef};
 
 use super::released::ReleasedSlopes;
 use super::solve::on_reduced_set;
@@ -110,6 +110,11 @@ impl Sensitivity {
         self.cost
     }
 
+    /// The derivatives of the released angles so far.
+    pub fn into_released(self) -> Vec<ReleasedSlopes> {
+        self.released
+    }
+
     /// Follows an accepted step. Collective.
     ///
     /// # Errors
@@ -124,7 +129,8 @@ impl Sensitivity {
         };
         let flowing = step.before.flowing(step.after);
         let contact = step.after.contact_states_at(system.local(), &u);
-        let changed = count_changes(&flowing, &self.flowing) + count_changes(&contact, &self.contact);
+        let changed =
+            count_changes(&flowing, &self.flowing) + count_changes(&contact, &self.contact);
         let [changed] = ranks::sums(system.comm(), [changed]);
         (self.flowing, self.contact) = (flowing, contact);
         let scheme = step.inertia.as_ref();
@@ -201,26 +207,39 @@ impl Sensitivity {
         } = self;
         let (comm, tracked) = (system.comm(), &mut tracked[index]);
         let displacements = system.owned_displacements();
-        let mut held = system.vector()?;
+        // Near the derivatives to come nearly all points yield or do not yield on both sides as they do in the solution,
+        // which at held unknowns they would not: the guess is those of the last step.
+        let mut guess = system.local_values(&tracked.unknowns)?;
+        system.local().limit_guess(step.u, &mut guess);
+        let mut acceleration = system.vector()?;
         if let Some(scheme) = scheme {
-            tracked.held_acceleration(scheme, displacements, &mut held)?;
+            tracked.guess_acceleration(scheme, displacements, &mut acceleration)?;
         }
         let along = Directions {
             history: &tracked.history,
-            a: &system.local_values(&held)?,
+            u: &guess,
+            a: &system.local_values(&acceleration)?,
         };
         let mut shares = vec![0.0; step.u.len()];
-        let evaluated = tracked.variation.residual_slope(step, &along, work, &mut shares);
+        let evaluated = tracked
+            .variation
+            .residual_slope(step, &along, work, &mut shares);
         if fails(comm, &evaluated) {
             return Ok(None);
         }
         let mut right_side = system.vector()?;
         system.sum_of_shares(&shares, &mut right_side)?;
         right_side.scale(-1.0)?;
-        let unknowns = on_reduced_set(system, &self.solve, closed, &right_side)?;
+        let correction = on_reduced_set(system, &self.solve, closed, &right_side)?;
         self.cost.solves += 1;
-        let du = system.local_values(&unknowns)?;
-        let advanced = tracked.variation.advance(step, &du, work, &mut tracked.history);
+        let mut du = system.local_values(&correction)?;
+        du.iter_mut()
+            .zip(&guess)
+            .for_each(|(du, guess)| *du += guess);
+        let unknowns = system.own_values(&du)?;
+        let advanced = tracked
+            .variation
+            .advance(step, &du, work, &mut tracked.history);
         if fails(comm, &advanced) {
             return Ok(None);
         }

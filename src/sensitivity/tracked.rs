@@ -62,19 +62,19 @@ impl Tracked {
         })
     }
 
-    /// Derivative of the acceleration in the equations of a step at held unknowns, of the first `count` displacements
-    /// this rank owns.
-    pub fn held_acceleration(
+    /// Derivative of the acceleration in the equations of a step that leaves those of the unknowns as they are, for the
+    /// `count` displacements this rank owns.
+    pub fn guess_acceleration(
         &self,
         scheme: &Scheme,
         count: usize,
         out: &mut Vector,
     ) -> petsc::Result<()> {
-        let (u, v) = (self.unknowns.read()?, self.velocity.read()?);
-        let (a, mut out) = (self.acceleration.read()?, out.write()?);
+        let (v, a) = (self.velocity.read()?, self.acceleration.read()?);
+        let mut out = out.write()?;
         let alpha = scheme.parameters.alpha_m;
         for i in 0..count {
-            let end = scheme.past() * a[i] - scheme.change() * (u[i] + scheme.dt * v[i]);
+            let end = scheme.past() * a[i] - scheme.change() * scheme.dt * v[i];
             out[i] = a[i] + alpha * (end - a[i]);
         }
         Ok(())

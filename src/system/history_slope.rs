@@ -33,12 +33,6 @@ impl History {
         self.friction_work = f(a.friction_work, b.friction_work);
     }
 
-    /// Whether any Gauss point of a local element has a derivative.
-    pub(super) fn element_moves(&self, element: usize) -> bool {
-        let at_rest = |point| gauss_point(point) == [0.0; 5];
-        !self.element(element).iter().all(at_rest)
-    }
-
     /// Advances friction to time `t` (ms) and unknowns `u` (local), and the Gauss points that are flowing; the others
     /// remember what they did.
     pub(super) fn advance_flowing(
@@ -144,10 +138,6 @@ impl System {
     }
 }
 
-fn combined<const N: usize>(
-    a: [f64; N],
-    b: [f64; N],
-    f: &impl Fn(f64, f64) -> f64,
-) -> [f64; N] {
+fn combined<const N: usize>(a: [f64; N], b: [f64; N], f: &impl Fn(f64, f64) -> f64) -> [f64; N] {
     std::array::from_fn(|i| f(a[i], b[i]))
 }

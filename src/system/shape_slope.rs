@@ -35,7 +35,11 @@ impl Subdomain {
         let mesh = &self.problem.mesh;
         let half_length = mesh.nodes.iter().fold(0.0_f64, |m, x| m.max(x[0]));
         let mut sums = ShapeSlopes::default();
-        let owned = self.nodes.iter().enumerate().filter(|(n, _)| self.owned[*n]);
+        let owned = self
+            .nodes
+            .iter()
+            .enumerate()
+            .filter(|(n, _)| self.owned[*n]);
         for (n, &node) in owned {
             if node == mesh.point_a {
                 sums.point_a += du[2 * n + 1];
@@ -102,8 +106,7 @@ impl ShapeSlopes {
         let by_along = by_along - (dot(by_from, now) + dot(from, by_now)) / n;
         let across = across - cross(from, now) / n;
         let by_across = by_across - (cross(by_from, now) + cross(from, by_now)) / n;
-        let turned =
-            (along * by_across - across * by_along) / (along * along + across * across);
+        let turned = (along * by_across - across * by_along) / (along * along + across * across);
         [point_a, -2.0 * turned.to_degrees()]
     }
 }

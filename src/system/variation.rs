@@ -6,7 +6,7 @@
 //! [`SHARE`], and the square of [`SHARE`].
 
 use mpi::traits::Communicator;
-use petsc::VectorRef;
+use petsc::{Vector, VectorRef};
 
 use super::System;
 use super::error::ElementFailure;
@@ -16,7 +16,6 @@ use super::problem::Problem;
 use super::shape_slope::ShapeSlopes;
 use super::subdomain::Subdomain;
 use crate::element::ElementForce;
-use crate::material::PointState;
 use crate::mesh::SurfaceSide;
 
 /// The share of its value by which the parameter differs on each side; docs/sensitivity.md measures others.
@@ -26,17 +25,12 @@ pub const SHARE: f64 = 1e-6;
 const NO_FORCE: f64 = 1e-13;
 const CLOSED: f64 = 1e-8;
 
-/// A deformation within the elastic range, which shows whether two materials differ there.
-const ELASTIC: [[f64; 2]; 2] = [[1.0 + 1e-5, 2e-5], [0.0, 1.0 - 3e-5]];
-
 /// The problems beside one of a system.
 pub struct Variation {
     /// Above and below.
     sides: [Subdomain; 2],
     /// Half the distance between them, in the unit of the parameter.
     half_width: f64,
-    /// Whether elements differ that remember nothing and do not yield.
-    all_elements: bool,
 }
 
 /// An accepted step as this rank sees it.
@@ -55,36 +49,32 @@ pub struct LocalStep<'a> {
     pub a: &'a [f64],
 }
 
-/// Derivatives by a parameter that a step begins with.
+/// What moves with a parameter.
 pub struct Directions<'a> {
-    /// Of the history.
+    /// Derivative of the history a step starts from.
     pub history: &'a History,
-    /// Of the accelerations in the step's equations at unknowns that are held.
+    /// A guess at that of the unknowns at its end (local); gaps stay.
+    pub u: &'a [f64],
+    /// That of the accelerations in its equations which goes with the guess (local).
     pub a: &'a [f64],
 }
 
 /// Room for both sides, the same for all parameters.
 pub struct Workspace {
     histories: [History; 2],
-    moved: [Vec<f64>; 2],
+    u: Vec<f64>,
+    a: Vec<f64>,
     residuals: [Vec<f64>; 2],
 }
 
 impl System {
     /// For problems above and below this one, on the same mesh but for its coordinates.
     pub fn variation(&self, [above, below]: [Problem; 2], half_width: f64) -> Variation {
-        let stress = |of: &Problem| {
-            let response = of.material.respond(&ELASTIC, &PointState::VIRGIN);
-            response.map(|response| response.kirchhoff)
-        };
-        let all_elements =
-            above.mesh.nodes != below.mesh.nodes || stress(&above) != stress(&below);
         let rank = self.comm().rank() as usize;
         let side = |problem| Subdomain::new(problem, self.partition(), self.numbering(), rank);
         Variation {
             sides: [side(above), side(below)],
             half_width,
-            all_elements,
         }
     }
 
@@ -95,6 +85,25 @@ impl System {
     pub fn sum_of_shares(&self, shares: &[f64], out: &mut VectorRef) -> petsc::Result<()> {
         out.set_all(0.0)?;
         self.ghosts.reverse_add(shares, out)
+    }
+
+    /// The vector with these local values, of which each rank has its own. Collective.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn own_values(&self, local: &[f64]) -> petsc::Result<Vector> {
+        let mut all = self.vector()?;
+        let first = all.ownership_range()?.start;
+        let mut write = all.write()?;
+        for (value, row) in local.iter().zip(self.local().rows()) {
+            if let Ok(own) = usize::try_from(row - first)
+                && let Some(entry) = write.get_mut(own)
+            {
+                *entry = *value;
+            }
+        }
+        drop(write);
+        Ok(all)
     }
 
     /// Global rows of this rank's gaps that are closed by a contact force at the converged unknowns `u` (local), ascending.
@@ -109,6 +118,18 @@ impl System {
 }
 
 impl Subdomain {
+    /// Leaves of a guess at the derivatives of the unknowns (local) what can be: gaps stay, and so does what an open point
+    /// does not carry at the converged unknowns `u`.
+    pub fn limit_guess(&self, u: &[f64], guess: &mut [f64]) {
+        for point in 0..self.contacts.len() {
+            let m = self.multiplier(point);
+            guess[m + 1] = 0.0;
+            if !self.carries(u, point) {
+                guess[m] = 0.0;
+            }
+        }
+    }
+
     /// Whether a contact point carries a force at converged unknowns.
     fn carries(&self, u: &[f64], point: usize) -> bool {
         let m = self.multiplier(point);
@@ -119,11 +140,12 @@ impl Subdomain {
 impl Workspace {
     /// For the variations of this subdomain.
     pub fn new(of: &Subdomain) -> Self {
-        let room = || [0, 1].map(|_| vec![0.0; of.unknown_count()]);
+        let room = || vec![0.0; of.unknown_count()];
         Self {
             histories: [0, 1].map(|_| History::virgin(of)),
-            moved: room(),
-            residuals: room(),
+            u: room(),
+            a: room(),
+            residuals: [0, 1].map(|_| room()),
         }
     }
 }
@@ -137,7 +159,7 @@ impl Variation {
         slope
     }
 
-    /// The derivative of this rank's share of the residual at held unknowns. Open contact points, which take no part in
+    /// The derivative of this rank's share of the residual along `along`. Open contact points, which take no part in
     /// equilibrium, are left out.
     ///
     /// # Errors
@@ -151,8 +173,9 @@ impl Variation {
     ) -> Result<(), ElementFailure> {
         for (side, by) in [self.half_width, -self.half_width].into_iter().enumerate() {
             work.histories[side].move_from(step.before, by, along.history);
-            move_from(&mut work.moved[side], step.a, by, along.a);
-            self.residual(side, step, along.history, work)?;
+            move_from(&mut work.u, step.u, by, along.u);
+            move_from(&mut work.a, step.a, by, along.a);
+            self.residual(side, step, work)?;
         }
         let [above, below] = &work.residuals;
         for ((out, above), below) in out.iter_mut().zip(above).zip(below) {
@@ -161,12 +184,11 @@ impl Variation {
         Ok(())
     }
 
-    /// The residual of one side but for what is the same on both.
+    /// The residual of one side.
     fn residual(
         &self,
         side: usize,
         step: &LocalStep<'_>,
-        slope: &History,
         work: &mut Workspace,
     ) -> Result<(), ElementFailure> {
         let (of, history) = (&self.sides[side], &work.histories[side]);
@@ -174,20 +196,15 @@ impl Variation {
         out.fill(0.0);
         let scale = 1.0 / of.problem.young_modulus;
         let mut local = ElementForce::ZERO;
-        let flowing = step.flowing.chunks_exact(history.per_element);
-        for (element, flowing) in flowing.enumerate() {
-            let yields = flowing.contains(&true);
-            if !(self.all_elements || yields || slope.element_moves(element)) {
-                continue;
-            }
-            of.element_force(history, element, step.u, false, &mut local)?;
+        for element in 0..of.elements.len() {
+            of.element_force(history, element, &work.u, false, &mut local)?;
             for (i, force) in local.force.iter().enumerate() {
                 out[2 * of.connectivity[element][i / 2] + i % 2] += scale * force;
             }
         }
-        of.add_inertia(&work.moved[side], out);
+        of.add_inertia(&work.a, out);
         for point in (0..of.contacts.len()).filter(|&point| of.carries(step.u, point)) {
-            of.add_contact_point(history, step.t, step.u, point, out);
+            of.add_contact_point(history, step.t, &work.u, point, out);
         }
         for support in &of.supports {
             out[support.unknown] = 0.0;
@@ -210,7 +227,7 @@ impl Variation {
     ) -> Result<(f64, usize), ElementFailure> {
         let mut forces = [0.0; 2];
         for (side, by) in [self.half_width, -self.half_width].into_iter().enumerate() {
-            let (of, u) = (&self.sides[side], &mut work.moved[side]);
+            let (of, u) = (&self.sides[side], &mut work.u);
             move_from(u, step.u, by, du);
             work.histories[side].advance_flowing(of, step.t, u, step.flowing)?;
             forces[side] = of.punch_force(&work.histories[side], step.t, u, step.u);
@@ -249,15 +266,6 @@ impl Variation {
 }
 
 impl Subdomain {
-    /// Puts the derivatives of the prescribed displacements, which are those that `du` has there (local), into the rows of
-    /// a derivative of the residual.
-    pub fn hold(&self, du: &[f64], residual: &mut [f64]) {
-        for support in &self.supports {
-            let owned = self.owned[support.unknown / 2];
-            residual[support.unknown] = if owned { -du[support.unknown] } else { 0.0 };
-        }
-    }
-
     /// Force of this rank's contact points that pushes the punch down, N per mm of width of the half model, at unknowns
     /// `u` whose history this is; of the points that carry at `base`.
     fn punch_force(&self, history: &History, t: f64, u: &[f64], base: &[f64]) -> f64 {
