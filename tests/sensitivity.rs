@@ -20,6 +20,12 @@ const RUBBED: &str = "-fixed_steps_load 140 -dt_initial 4.5 -newton_max_iteratio
 const SHARES: [f64; 2] = [1e-5, 1e-6];
 /// Largest difference as a share of the column's largest derivative.
 const AGREE: f64 = 1e-4;
+/// To what an angle is known, degrees: the solves stop at 1e-12 mm, and the arm that is fitted is 10 mm long.
+const ROUNDING: f64 = 1e-10;
+
+/// Largest difference between numbers of ranks, likewise: strains are rounded to 1e-16, which is divided by the share 1e-6
+/// and taken up by a sheet that is a thousand times stiffer along than across.
+const RANKS: f64 = 1e-5;
 
 const QUANTITIES: [&str; 3] = ["force_N", "angle_deg", "dy_A_sheet_mm"];
 
@@ -102,9 +108,10 @@ fn agrees(name: &str, parameters: &[&str], options: &[&str]) {
                     .map(|(slope, (above, below))| ((above - below) / width - slope).abs() / scale);
                 *best = best.min(errors.fold(0.0, f64::max));
             }
-            let difference = (above.1.unwrap_or(f64::NAN) - below.1.unwrap_or(f64::NAN)) / width;
+            let difference = above.1.unwrap_or(f64::NAN) - below.1.unwrap_or(f64::NAN);
             if let Some(slope) = released[parameter].as_f64() {
-                best[3] = best[3].min((difference / slope - 1.0).abs());
+                let error = (difference - slope * width).abs() - ROUNDING;
+                best[3] = best[3].min(error.max(0.0) / (slope * width).abs());
             }
         }
         println!("{name}, {parameter}: {best:?}");
@@ -222,7 +229,7 @@ fn two_ranks_have_the_same_derivatives() {
         let scale = largest(values);
         assert!(scale > 0.0, "{name}");
         for (a, b) in values.iter().zip(&two[name]) {
-            assert!((a - b).abs() <= 1e-8 * scale, "{name}: {a} {b}");
+            assert!((a - b).abs() <= RANKS * scale, "{name}: {a} {b}");
         }
     }
 }
