@@ -212,6 +212,8 @@ pub struct Output {
     pub iterations: bool,
     /// Whether the model is only shown.
     pub dry_run: bool,
+    /// Options by whose values the run is differentiated.
+    pub sensitivity: Vec<&'static str>,
 }
 
 /// Checkpoints, when to stop, and from where to go on.

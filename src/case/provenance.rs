@@ -28,6 +28,14 @@ impl Case {
             .collect()
     }
 
+    /// [`Case::options`] as a source that can be read again.
+    pub(super) fn saved(&self) -> BTreeMap<String, String> {
+        let options = self.options().into_iter();
+        options
+            .map(|(name, value)| (name.to_owned(), value))
+            .collect()
+    }
+
     /// How this case differs from another one that was saved by [`Case::options`]: where physics or mesh differ, and where
     /// only the way to the solution does. The value of the other case is called the reference. Paths of hardening tables
     /// are not compared.
@@ -40,20 +48,22 @@ impl Case {
             (group.defines_model() || group == Group::Stepping)
                 && option.name() != table::HARDENING_FILE.name
         };
-        let missing = || "not known".to_owned();
         TABLE
             .iter()
             .filter(compared)
             .filter_map(|option| {
                 // Constants of another law than that of this case are not shown: the law itself differs then.
                 let value = option.shown(self)?;
-                let then = saved.get(option.name()).cloned().unwrap_or_else(missing);
+                // A case saved before there was the option had what is the default now.
+                let then = saved
+                    .get(option.name())
+                    .map_or(option.default(), |then| then);
                 Some((
                     option.group().defines_model(),
                     Difference {
                         option: option.name(),
                         value,
-                        reference: then,
+                        reference: then.to_owned(),
                     },
                 ))
             })

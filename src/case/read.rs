@@ -67,6 +67,7 @@ impl Case {
                 every: table::OUTPUT_EVERY.read(options)?,
                 iterations: table::MONITOR_ITERATIONS.read(options)?,
                 dry_run: table::DRY_RUN.read(options)?,
+                sensitivity: table::SENSITIVITY.read(options)?,
             },
             resuming: Resuming {
                 checkpoint_every: table::CHECKPOINT_EVERY.read(options)?,
@@ -76,6 +77,7 @@ impl Case {
                 overwrite: table::OVERWRITE.read(options)?,
             },
         };
+        case.parameters()?;
         geometry::check(&case)?;
         check_step_order(&case.stepping)?;
         Ok(case)
@@ -146,8 +148,13 @@ fn read_hardening(options: &dyn OptionSource, young_modulus: f64) -> Result<Read
         .collect::<Result<Vec<f64>, CaseError>>()?;
     let hardening = match law.build {
         Some(build) => build(&values, young_modulus)?,
-        None if benchmark => Hardening::benchmark(young_modulus)?,
-        None => Hardening::from_file(std::path::Path::new(&file), young_modulus)?,
+        None => {
+            let table = match benchmark {
+                true => Hardening::benchmark(young_modulus)?,
+                false => Hardening::from_file(std::path::Path::new(&file), young_modulus)?,
+            };
+            table.scaled(values[0])
+        }
     };
     Ok((law, values, file, hardening))
 }

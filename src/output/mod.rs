@@ -10,6 +10,7 @@ mod arrays;
 mod atomic;
 pub mod banner;
 pub mod checkpoint;
+pub mod derivatives;
 pub mod error;
 pub mod folder;
 pub mod history;
@@ -24,6 +25,7 @@ pub mod verdict;
 pub mod vtkhdf;
 
 pub use arrays::Arrays;
+pub use derivatives::{DerivativeFile, DerivativeRow, DerivativeTable};
 pub use error::OutputError;
 pub(crate) use error::agree;
 pub use folder::OutputDir;

@@ -56,4 +56,15 @@ pub enum RestartError {
         /// The options that differ.
         differences: String,
     },
+    /// The checkpoint has not the derivatives that are asked for.
+    #[error(
+        "-restart: the checkpoint {} carries {}; use -sensitivity {found}, or run without -restart", path.display(),
+        if found == "none" { "no derivatives".to_owned() } else { format!("derivatives by {found}") }
+    )]
+    OtherParameters {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Its parameters as -sensitivity takes them.
+        found: String,
+    },
 }
