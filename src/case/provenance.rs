@@ -6,6 +6,7 @@ use super::error::CaseError;
 use super::model::Case;
 use super::option::{Described, Group};
 use super::table::{self, TABLE};
+use crate::text::show_real;
 
 /// An option whose value is not that of the reference case.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -26,6 +27,20 @@ impl Case {
             .iter()
             .filter_map(|option| Some((option.name(), option.shown(self)?)))
             .collect()
+    }
+
+    /// The same case with other values of options that are real numbers, read and checked anew.
+    ///
+    /// # Errors
+    /// As [`Case::read`].
+    pub fn with(&self, values: &[(&str, f64)]) -> Result<Case, CaseError> {
+        let options = self.options().into_iter();
+        let mut options: BTreeMap<String, String> =
+            options.map(|(name, value)| (name.to_owned(), value)).collect();
+        for (name, value) in values {
+            options.insert((*name).to_owned(), show_real(*value));
+        }
+        Case::read(&options)
     }
 
     /// How this case differs from another one that was saved by [`Case::options`]: where physics or mesh differ, and where
