@@ -132,6 +132,14 @@ pub enum CaseError {
         /// Name of the law in use.
         law: &'static str,
     },
+    /// A parameter by which this case has no derivative.
+    #[error("option -sensitivity {name}: {reason}")]
+    NoDerivative {
+        /// Name of the parameter.
+        name: &'static str,
+        /// Why, and what to do.
+        reason: String,
+    },
     /// The punch passes between two contact points. Lengths in mm.
     #[error(
         "the mesh cannot feel the punch: -punch_radius {} mm is smaller than the distance between contact points, \

@@ -94,8 +94,12 @@ impl Material {
         let law = self.hardening_law;
         if let Hardening::Table(table) = &self.hardening {
             let (pieces, last) = table.pieces();
+            let factor = match self.hardening_constants[..] {
+                [1.0] | [] => String::new(),
+                [factor, ..] => format!(", its stresses times {}", show_real(factor)),
+            };
             return format!(
-                "table {} of {pieces} pieces, with its last slope beyond a plastic strain of {last:.3}",
+                "table {} of {pieces} pieces, with its last slope beyond a plastic strain of {last:.3}{factor}",
                 self.hardening_file
             );
         }

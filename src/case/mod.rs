@@ -21,6 +21,7 @@ mod read;
 mod reference;
 mod reference_force;
 mod reference_regression;
+mod sensitivity;
 mod table;
 mod unused;
 
@@ -40,5 +41,6 @@ pub use option::OptionSource;
 pub use provenance::Difference;
 pub use reference::{Instant, Origin, ReferenceValue, Tolerance};
 pub use reference_force::ReferenceForce;
+pub use sensitivity::Parameter;
 pub use unused::check_unused;
 pub(crate) use unused::condensed_option;

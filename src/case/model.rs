@@ -217,6 +217,8 @@ pub struct Output {
     pub dry_run: bool,
     /// Whether the screen stays silent: one of several runs of a search.
     pub quiet: bool,
+    /// Options by whose values the run is differentiated.
+    pub sensitivity: Vec<&'static str>,
 }
 
 /// Checkpoints, when to stop, and from where to go on.

@@ -6,7 +6,6 @@ use super::error::CaseError;
 use super::model::Case;
 use super::option::{Described, Group};
 use super::table::{self, TABLE};
-use crate::text::show_real;
 
 /// An option whose value is not that of the reference case.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -29,18 +28,12 @@ impl Case {
             .collect()
     }
 
-    /// The same case with other values of options that are real numbers, read and checked anew.
-    ///
-    /// # Errors
-    /// As [`Case::read`].
-    pub fn with(&self, values: &[(&str, f64)]) -> Result<Case, CaseError> {
+    /// [`Case::options`] as a source that can be read again.
+    pub(super) fn saved(&self) -> BTreeMap<String, String> {
         let options = self.options().into_iter();
-        let mut options: BTreeMap<String, String> =
-            options.map(|(name, value)| (name.to_owned(), value)).collect();
-        for (name, value) in values {
-            options.insert((*name).to_owned(), show_real(*value));
-        }
-        Case::read(&options)
+        options
+            .map(|(name, value)| (name.to_owned(), value))
+            .collect()
     }
 
     /// How this case differs from another one that was saved by [`Case::options`]: where physics or mesh differ, and where
@@ -55,20 +48,20 @@ impl Case {
             (group.defines_model() || group == Group::Stepping)
                 && option.name() != table::HARDENING_FILE.name
         };
-        let missing = || "not known".to_owned();
         TABLE
             .iter()
             .filter(compared)
             .filter_map(|option| {
                 // Constants of another law than that of this case are not shown: the law itself differs then.
                 let value = option.shown(self)?;
-                let then = saved.get(option.name()).cloned().unwrap_or_else(missing);
+                // A case saved before there was the option had what is the default now.
+                let then = saved.get(option.name()).map_or(option.default(), |then| then);
                 Some((
                     option.group().defines_model(),
                     Difference {
                         option: option.name(),
                         value,
-                        reference: then,
+                        reference: then.to_owned(),
                     },
                 ))
             })

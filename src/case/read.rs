@@ -68,6 +68,7 @@ impl Case {
                 iterations: table::MONITOR_ITERATIONS.read(options)?,
                 dry_run: table::DRY_RUN.read(options)?,
                 quiet: false,
+                sensitivity: table::SENSITIVITY.read(options)?,
             },
             resuming: Resuming {
                 checkpoint_every: table::CHECKPOINT_EVERY.read(options)?,
@@ -85,6 +86,7 @@ impl Case {
                 refinement: table::DESIGN_REFINEMENT.read(options)?,
             },
         };
+        case.parameters()?;
         geometry::check(&case)?;
         check_step_order(&case.stepping)?;
         inverse::check(&case)?;
@@ -156,8 +158,13 @@ fn read_hardening(options: &dyn OptionSource, young_modulus: f64) -> Result<Read
         .collect::<Result<Vec<f64>, CaseError>>()?;
     let hardening = match law.build {
         Some(build) => build(&values, young_modulus)?,
-        None if benchmark => Hardening::benchmark(young_modulus)?,
-        None => Hardening::from_file(std::path::Path::new(&file), young_modulus)?,
+        None => {
+            let table = match benchmark {
+                true => Hardening::benchmark(young_modulus)?,
+                false => Hardening::from_file(std::path::Path::new(&file), young_modulus)?,
+            };
+            table.scaled(values[0])
+        }
     };
     Ok((law, values, file, hardening))
 }

@@ -13,6 +13,7 @@ use super::kind::{Choice, Flag, Integer, List, Path, Real};
 use super::kind_resuming::{Restarting, WallTime};
 use super::model::Dynamics;
 use super::option::{Described, Group, Opt};
+use super::sensitivity::Parameters;
 use crate::contact::ContactLocation;
 use crate::element::Quadrature;
 
@@ -240,6 +241,12 @@ option_table! {
         name: "output_every", unit: "", default: "1", group: Group::Output, kind: Integer(0, 1_000_000),
         meaning: "Number of accepted steps from one saving of the fields to the next; 0 saves them at the ends of loading and unloading only.",
         value: |case| case.output.every,
+    }
+    SENSITIVITY: Parameters {
+        name: "sensitivity", unit: "", default: "none", group: Group::Output, kind: Parameters,
+        meaning: "Parameters by which the run is differentiated: the derivatives of force, angle and displacement go to \
+                  sensitivity.csv.",
+        value: |case| case.output.sensitivity.clone(),
     }
     CHECKPOINT_EVERY: Integer {
         name: "checkpoint_every", unit: "", default: "0", group: Group::Resuming, kind: Integer(0, 1_000_000),

@@ -1,15 +1,22 @@
 //! A table of points, with straight pieces between them.
 
+use std::ops::Bound;
 use std::path::Path;
 
 use super::table_text::{self, Row};
-use super::{Declaration, Hardening, Law, PlasticStep};
+use super::{Constant, Declaration, Hardening, Law, PlasticStep};
 use crate::text;
 
 pub(super) static LAW: Declaration = Declaration {
     name: "table",
     formula: "linear between the points of -hardening_file",
-    constants: &[],
+    constants: &[Constant {
+        name: "table_factor",
+        unit: "",
+        default: "1",
+        range: (Bound::Excluded(0.0), Bound::Included(1e3)),
+        meaning: "With -hardening table: factor on the table's flow stresses at the same plastic strains.",
+    }],
     build: None,
 };
 
@@ -131,6 +138,21 @@ impl Hardening {
         table_text::plastic_points(&rows, young)
             .map(|points| Self::Table(Table::through(&points)))
             .map_err(refuse)
+    }
+}
+
+impl Hardening {
+    /// The law with all flow stresses of a table times this factor; another law as it is.
+    #[must_use]
+    pub fn scaled(mut self, factor: f64) -> Self {
+        if let Self::Table(Table { segments }) = &mut self {
+            for segment in segments {
+                segment.stress *= factor;
+                segment.slope *= factor;
+                segment.work *= factor;
+            }
+        }
+        self
     }
 }
 
