@@ -74,7 +74,14 @@ pub fn agree_in_words<T, E: std::fmt::Display>(
     let Some(lowest) = lowest_failing(comm, mine.is_err()) else {
         return mine.map_err(|error| error.to_string());
     };
-    let sentence = mine.err().map_or_else(String::new, |error| error.to_string());
+    let sentence = mine
+        .err()
+        .map_or_else(String::new, |error| error.to_string());
     let sentence = broadcast_bytes(comm, lowest, sentence.into_bytes());
     Err(String::from_utf8_lossy(&sentence).into_owned())
+}
+
+/// Gives every rank the numbers of rank 0, to the last bit. Collective.
+pub fn from_first(comm: &impl Communicator, numbers: &mut [f64]) {
+    comm.process_at_rank(0).broadcast_into(numbers);
 }

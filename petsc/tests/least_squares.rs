@@ -50,7 +50,12 @@ fn problem(
 /// Two residuals that cannot both vanish: x - 1 and x² - 2, whose sum of squares is least where
 /// x - 1 + 2 x (x² - 2) = 0.
 fn compromise(comm: &SimpleCommunicator, start: f64) -> (Tao, Vector) {
-    problem(comm, start, |x| Ok([x - 1.0, x * x - 2.0]), |x| [1.0, 2.0 * x])
+    problem(
+        comm,
+        start,
+        |x| Ok([x - 1.0, x * x - 2.0]),
+        |x| [1.0, 2.0 * x],
+    )
 }
 
 fn bounded(tao: &mut Tao, x: &Vector, lower: f64, upper: f64) {

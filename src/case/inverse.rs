@@ -40,7 +40,8 @@ fn sought(text: &str) -> Result<Sought, Problem> {
     let [name, lower, upper] = parts[..] else {
         return Err("each parameter is written name:lower:upper, as in hollomon_k:300:900");
     };
-    let option = parameter(name).ok_or("a name is none of the model's options with a real number")?;
+    let option =
+        parameter(name).ok_or("a name is none of the model's options with a real number")?;
     let bound = |text: &str| text.parse().ok().filter(|bound: &f64| bound.is_finite());
     let (Some(lower), Some(upper)) = (bound(lower), bound(upper)) else {
         return Err("a bound is not a finite number");
@@ -64,7 +65,8 @@ impl Kind for SoughtList {
             return Ok(Vec::new());
         }
         let list = text.split(',').map(sought).collect::<Result<Vec<_>, _>>()?;
-        let twice = |(place, one): (usize, &Sought)| list[..place].iter().any(|o| o.name == one.name);
+        let twice =
+            |(place, one): (usize, &Sought)| list[..place].iter().any(|o| o.name == one.name);
         if list.iter().enumerate().any(twice) {
             return Err("a parameter is there twice");
         }
@@ -149,6 +151,15 @@ impl Inverse {
 }
 
 impl Case {
+    /// The same case with nothing to be looked for.
+    pub fn without_search(&self) -> Case {
+        let mut case = self.clone();
+        case.inverse.identify = None;
+        case.inverse.design = None;
+        case.inverse.parameters.clear();
+        case
+    }
+
     /// The value of an option with a real number, if this case has a use for it.
     pub fn real(&self, name: &str) -> Option<f64> {
         parameter(name)?.shown(self)?.parse().ok()
@@ -170,9 +181,15 @@ pub(super) fn check(case: &Case) -> Result<(), CaseError> {
     } = &case.inverse;
     let problem = match (identify, design, &parameters[..]) {
         (None, None, []) => return Ok(()),
-        (None, None, _) => "it has no effect without -identify or -design; add one of them, or leave it out",
-        (Some(_), Some(_), _) => "-identify and -design cannot be given together; make one after the other",
-        (_, _, []) => "there is none; name what is looked for with its bounds, as in -parameters hollomon_k:300:900",
+        (None, None, _) => {
+            "it has no effect without -identify or -design; add one of them, or leave it out"
+        }
+        (Some(_), Some(_), _) => {
+            "-identify and -design cannot be given together; make one after the other"
+        }
+        (_, _, []) => {
+            "there is none; name what is looked for with its bounds, as in -parameters hollomon_k:300:900"
+        }
         (_, Some(_), list) if list.len() > MOST_DESIGNED => {
             "-design takes one or two; leave the others at their values"
         }
@@ -188,7 +205,9 @@ pub(super) fn check(case: &Case) -> Result<(), CaseError> {
 }
 
 fn check_one(case: &Case, sought: &Sought) -> Result<(), CaseError> {
-    let Sought { name, lower, upper, .. } = *sought;
+    let Sought {
+        name, lower, upper, ..
+    } = *sought;
     let loading = parameter(name).is_some_and(|option| option.group() == Group::Loading);
     if loading && case.inverse.identify.is_some() {
         return refuse(format!(
@@ -210,13 +229,13 @@ fn check_one(case: &Case, sought: &Sought) -> Result<(), CaseError> {
         ));
     }
     // Both ends must make a case; without what is looked for, or this would be asked again for ever.
-    let plain = Case {
-        inverse: Inverse::default(),
-        ..case.clone()
-    };
+    let plain = case.without_search();
     for bound in [lower, upper] {
         if let Err(error) = plain.with(&[(name, bound)]) {
-            return refuse(format!("the bound {} of {name} cannot be used: {error}", show_real(bound)));
+            return refuse(format!(
+                "the bound {} of {name} cannot be used: {error}",
+                show_real(bound)
+            ));
         }
     }
     Ok(())

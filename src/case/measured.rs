@@ -38,8 +38,14 @@ pub fn read_measured(
         problem,
     };
     let text = text::read(Path::new(path)).map_err(|reason| {
-        let needed = format!("specify the path of a CSV file with the header {}", COLUMNS.join(","));
-        blame((None, format!("the file cannot be read ({reason}); {needed}")))
+        let needed = format!(
+            "specify the path of a CSV file with the header {}",
+            COLUMNS.join(",")
+        );
+        blame((
+            None,
+            format!("the file cannot be read ({reason}); {needed}"),
+        ))
     })?;
     let points = points(&text, stroke).map_err(blame)?;
     if points.len() <= parameters {
@@ -62,13 +68,19 @@ fn points(text: &str, greatest: f64) -> Result<Vec<MeasuredPoint>, Refusal> {
         .from_reader(text.as_bytes());
     let malformed = |error: csv::Error| {
         let line = error.position().map(csv::Position::line);
-        (line, "the line has another number of columns than the header; each needs a comma".to_owned())
+        (
+            line,
+            "the line has another number of columns than the header; each needs a comma".to_owned(),
+        )
     };
     let header = table.headers().map_err(malformed)?.clone();
     let place = |name: &str| header.iter().position(|word| word == name);
-    let (Some(stroke), Some(force), Some(uncertainty), 3) =
-        (place(COLUMNS[0]), place(COLUMNS[1]), place(COLUMNS[2]), header.len())
-    else {
+    let (Some(stroke), Some(force), Some(uncertainty), 3) = (
+        place(COLUMNS[0]),
+        place(COLUMNS[1]),
+        place(COLUMNS[2]),
+        header.len(),
+    ) else {
         let given = shortened(&header.iter().collect::<Vec<_>>().join(","));
         let problem = format!(
             "the header is '{given}' instead of {}; convert to these units and name the columns so",
@@ -85,7 +97,13 @@ fn points(text: &str, greatest: f64) -> Result<Vec<MeasuredPoint>, Refusal> {
             let value = text.parse().ok().filter(|value: &f64| value.is_finite());
             value.ok_or_else(|| {
                 let name = header.get(column).unwrap_or_default();
-                (line, format!("{name} '{}' is not a finite number such as 180.5", shortened(text)))
+                (
+                    line,
+                    format!(
+                        "{name} '{}' is not a finite number such as 180.5",
+                        shortened(text)
+                    ),
+                )
             })
         };
         let point = MeasuredPoint {
@@ -154,11 +172,26 @@ mod tests {
     #[test]
     fn what_cannot_be_compared_is_refused_with_its_line() {
         for (from, to, line, part) in [
-            ("force_N", "force_kN", None, "the header is 'force_kN,stroke_mm"),
+            (
+                "force_N",
+                "force_kN",
+                None,
+                "the header is 'force_kN,stroke_mm",
+            ),
             ("84.7,2,0.8", "84.7,2", Some(5), "another number of columns"),
             ("84.7,2,0.8", "84.7,2,0", Some(5), "above 0"),
-            ("84.7,2,0.8", "NaN,2,0.8", Some(5), "force_N 'NaN' is not a finite number"),
-            ("84.7,2,0.8", "84.7,0.5,0.8", Some(5), "at least 1.001 is needed"),
+            (
+                "84.7,2,0.8",
+                "NaN,2,0.8",
+                Some(5),
+                "force_N 'NaN' is not a finite number",
+            ),
+            (
+                "84.7,2,0.8",
+                "84.7,0.5,0.8",
+                Some(5),
+                "at least 1.001 is needed",
+            ),
             ("84.7,2,0.8", "84.7,29,0.8", Some(5), "beyond -stroke 28.5"),
         ] {
             let (at, problem) = points(&GOOD.replace(from, to), 28.5).unwrap_err();

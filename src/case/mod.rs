@@ -34,8 +34,8 @@ pub use help::{help_text, options_markdown};
 pub use inverse::Sought;
 pub use measured::{MeasuredPoint, read_measured};
 pub use model::{
-    Case, Discretisation, Dynamics, Friction, Inverse, Loading, Material, Output, Restart, Resuming, Sheet,
-    Stepping, Tools,
+    Case, Discretisation, Dynamics, Friction, Inverse, Loading, Material, Output, Restart,
+    Resuming, Sheet, Stepping, Tools,
 };
 pub use option::OptionSource;
 pub use provenance::Difference;

@@ -248,7 +248,7 @@ pub enum Restart {
 }
 
 /// What is looked for by several runs, if anything.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Inverse {
     /// Path of the measured curve that is to be met.
     pub identify: Option<String>,

@@ -55,7 +55,9 @@ impl Case {
                 // Constants of another law than that of this case are not shown: the law itself differs then.
                 let value = option.shown(self)?;
                 // A case saved before there was the option had what is the default now.
-                let then = saved.get(option.name()).map_or(option.default(), |then| then);
+                let then = saved
+                    .get(option.name())
+                    .map_or(option.default(), |then| then);
                 Some((
                     option.group().defines_model(),
                     Difference {

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use super::error::CaseError;
 use super::hardening::{constants, has};
 use super::model::{
-    Case, Discretisation, Friction, Inverse, Loading, Material, Output, Resuming, Sheet, Stepping, Tools,
+    Case, Discretisation, Friction, Inverse, Loading, Material, Output, Resuming, Sheet, Stepping,
+    Tools,
 };
 use super::option::{self, OptionSource};
 use super::{geometry, inverse, table};

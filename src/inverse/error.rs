@@ -23,7 +23,9 @@ pub enum InverseError {
     #[error("{0}")]
     Agreed(String),
     /// The first run cannot be solved, so that there is nothing to start from.
-    #[error("the run with the values the search starts from was not solved to its end: see {folder}; start from other values")]
+    #[error(
+        "the run with the values the search starts from was not solved to its end: see {folder}; start from other values"
+    )]
     NoStart {
         /// Its folder.
         folder: String,

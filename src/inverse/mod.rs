@@ -3,6 +3,7 @@
 //! Never: mechanics, or what happens within a run.
 
 mod design;
+mod design_report;
 mod error;
 mod fit;
 mod identification;

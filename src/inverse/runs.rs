@@ -11,7 +11,7 @@ use super::InverseError;
 use crate::case::{Case, Inverse, Sought};
 use crate::output::{Monitor, OutputDir, StepRecord};
 use crate::ranks::agree_in_words;
-use crate::run::{Ending, Outcome, Springback, conclude, simulate};
+use crate::run::{Ending, Springback, conclude, simulate};
 use crate::text::number;
 
 /// Runs of a case, as many as are allowed.
@@ -27,9 +27,6 @@ pub(super) struct Runs {
     made: usize,
     began: Instant,
 }
-
-/// What a run is asked for.
-pub(super) type Reading<T> = fn(&Case, &Outcome) -> T;
 
 /// A run that was solved to its end.
 pub(super) struct Ran {
@@ -57,15 +54,14 @@ impl Runs {
         let replaced = folder.replace(None, case.resuming.overwrite, comm)?;
         let mut monitor = Monitor::new(comm.rank(), std::io::stdout(), case.loading.motion());
         let log = match comm.rank() {
-            0 => folder.forget(None).and_then(|()| monitor.log_to(&folder.log(), false)),
+            0 => folder
+                .forget(None)
+                .and_then(|()| monitor.log_to(&folder.log(), false)),
             _ => Ok(()),
         };
         agree_in_words(comm, log).map_err(InverseError::Agreed)?;
         monitor.show(&replaced);
-        let mut case = Case {
-            inverse: Inverse::default(),
-            ..case.clone()
-        };
+        let mut case = case.without_search();
         case.output.quiet = true;
         Ok(Self {
             case,
@@ -134,7 +130,12 @@ impl Runs {
             .collect();
         self.show(&format!("run {:>3}  {}", self.made, text.join(" ")));
         let folder = format!("run-{:03}", self.made);
-        let pairs: Vec<(&str, f64)> = self.parameters.iter().map(|p| p.name).zip(values.iter().copied()).collect();
+        let pairs: Vec<(&str, f64)> = self
+            .parameters
+            .iter()
+            .map(|p| p.name)
+            .zip(values.iter().copied())
+            .collect();
         let ran = match self.case.with(&pairs) {
             Ok(case) => self.run(case, &folder)?,
             Err(error) => {
@@ -149,8 +150,17 @@ impl Runs {
     ///
     /// # Errors
     /// As [`Runs::next`].
-    pub fn confirm(&mut self, values: &[f64], refinement: usize) -> Result<Option<Ran>, InverseError> {
-        let pairs: Vec<(&str, f64)> = self.parameters.iter().map(|p| p.name).zip(values.iter().copied()).collect();
+    pub fn confirm(
+        &mut self,
+        values: &[f64],
+        refinement: usize,
+    ) -> Result<Option<Ran>, InverseError> {
+        let pairs: Vec<(&str, f64)> = self
+            .parameters
+            .iter()
+            .map(|p| p.name)
+            .zip(values.iter().copied())
+            .collect();
         let mut case = self.case.with(&pairs)?;
         case.discretisation.nx *= refinement;
         case.discretisation.ny *= refinement;

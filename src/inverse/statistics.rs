@@ -29,7 +29,11 @@ pub fn singular_values(mut columns: Vec<Vec<f64>>) -> (Vec<f64>, Vec<Vec<f64>>) 
             break;
         }
     }
-    let mut pairs: Vec<(f64, Vec<f64>)> = columns.iter().map(|c| dot(c, c).sqrt()).zip(vectors).collect();
+    let mut pairs: Vec<(f64, Vec<f64>)> = columns
+        .iter()
+        .map(|c| dot(c, c).sqrt())
+        .zip(vectors)
+        .collect();
     pairs.sort_by(|one, other| other.0.total_cmp(&one.0));
     pairs.into_iter().unzip()
 }
@@ -72,9 +76,15 @@ impl Statistics {
                 part if part.abs() < ROUNDING => 0.0,
                 part => part.signum() * f64::INFINITY,
             };
-            singular_values.iter().zip(&directions).map(of_direction).sum()
+            singular_values
+                .iter()
+                .zip(&directions)
+                .map(of_direction)
+                .sum()
         };
-        let covariance = (0..n).map(|i| (0..n).map(|k| entry(i, k)).collect()).collect();
+        let covariance = (0..n)
+            .map(|i| (0..n).map(|k| entry(i, k)).collect())
+            .collect();
         Self {
             singular_values,
             directions,
@@ -84,7 +94,9 @@ impl Statistics {
 
     /// Standard error of each parameter.
     pub fn standard_errors(&self) -> Vec<f64> {
-        (0..self.covariance.len()).map(|i| self.covariance[i][i].sqrt()).collect()
+        (0..self.covariance.len())
+            .map(|i| self.covariance[i][i].sqrt())
+            .collect()
     }
 
     /// Correlation of two parameters; not a number where one of them is not determined at all.
@@ -109,7 +121,9 @@ mod tests {
     fn a_known_matrix_has_its_singular_values() {
         // (3 0; 4 5): the product is 15, the sum of squares 50.
         let (values, vectors) = singular_values(vec![vec![3.0, 4.0], vec![0.0, 5.0]]);
-        assert!((values[0] - 45f64.sqrt()).abs() < 1e-14 && (values[1] - 5f64.sqrt()).abs() < 1e-14);
+        assert!(
+            (values[0] - 45f64.sqrt()).abs() < 1e-14 && (values[1] - 5f64.sqrt()).abs() < 1e-14
+        );
         assert!((vectors[0][0].abs() - 0.5f64.sqrt()).abs() < 1e-14);
         assert!(dot(&vectors[0], &vectors[1]).abs() < 1e-15);
     }
@@ -118,7 +132,10 @@ mod tests {
     fn a_small_singular_value_keeps_its_digits() {
         let columns = vec![vec![1.0, 0.0, 0.0], vec![1.0, 1e-9, 0.0]];
         let (values, _) = singular_values(columns);
-        assert!((values[1] * values[0] / 1e-9 - 1.0).abs() < 1e-6, "{values:?}");
+        assert!(
+            (values[1] * values[0] / 1e-9 - 1.0).abs() < 1e-6,
+            "{values:?}"
+        );
     }
 
     #[test]
@@ -137,7 +154,11 @@ mod tests {
 
     #[test]
     fn two_parameters_with_one_effect_are_not_determined_and_a_third_one_is() {
-        let columns = [vec![1.0, 2.0, 0.0], vec![2.0, 4.0, 0.0], vec![0.0, 0.0, 10.0]];
+        let columns = [
+            vec![1.0, 2.0, 0.0],
+            vec![2.0, 4.0, 0.0],
+            vec![0.0, 0.0, 10.0],
+        ];
         let errors = Statistics::of(&columns).standard_errors();
         assert!(errors[0].is_infinite() && errors[1].is_infinite());
         assert!((errors[2] - 0.1).abs() < 1e-14);

@@ -24,6 +24,7 @@ pub mod verdict;
 pub mod vtkhdf;
 
 pub use arrays::Arrays;
+pub(crate) use atomic::write_json;
 pub use error::OutputError;
 pub(crate) use error::agree;
 pub use folder::OutputDir;

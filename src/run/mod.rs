@@ -44,6 +44,7 @@ use crate::output::OutputDir;
 use crate::system::{History, Problem, System};
 use ledger::Spent;
 use outcome::why;
+pub use setup::refuse_bad_options;
 use setup::{blas, defaults, doubtful, linear, unread};
 use simulation::Simulation;
 use step_size::landmarks;

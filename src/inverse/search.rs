@@ -1,0 +1,216 @@
+//! The weighted residuals of a measured curve and their derivatives, each from whole runs.
+
+use super::InverseError;
+use super::runs::{Ran, Runs};
+use super::statistics::dot;
+use crate::case::{MeasuredPoint, Sought};
+use crate::output::StepRecord;
+use crate::ranks::from_first;
+use crate::text::{number, rounded};
+
+/// Step of a difference between two runs, as a share of the width of the bounds: far above what Newton's tolerance leaves
+/// in the forces, and short against any curvature.
+const DIFFERENCE: f64 = 1e-3;
+/// Digits of a value that is tried; what lies beyond comes from scaling forth and back.
+const DIGITS: usize = 12;
+
+/// A point of the search, in the unit box of the bounds.
+#[derive(Clone)]
+pub(super) struct Tried {
+    pub at: Vec<f64>,
+    /// None where the run was not solved to its end.
+    pub fit: Option<Fit>,
+}
+
+/// How a run meets the measured curve.
+#[derive(Clone)]
+pub(super) struct Fit {
+    pub values: Vec<f64>,
+    pub folder: String,
+    pub records: Vec<StepRecord>,
+    /// Computed less measured force, divided by the uncertainty.
+    pub residual: Vec<f64>,
+    /// Derivatives of that by the scaled parameters, one list for each.
+    pub columns: Vec<Vec<f64>>,
+}
+
+impl Fit {
+    /// Sum of the squares of the residuals.
+    pub fn chi_squared(&self) -> f64 {
+        dot(&self.residual, &self.residual)
+    }
+
+    /// The derivatives, row by row.
+    pub fn entries(&self) -> Vec<f64> {
+        let row = |row: usize| self.columns.iter().map(move |column| column[row]);
+        (0..self.residual.len()).flat_map(row).collect()
+    }
+
+    /// Gradient of half of it by the scaled parameters.
+    pub fn gradient(&self) -> Vec<f64> {
+        let columns = self.columns.iter();
+        columns.map(|column| dot(column, &self.residual)).collect()
+    }
+}
+
+/// The search: what is compared, and all that was tried.
+pub(super) struct Search {
+    pub runs: Runs,
+    measured: Vec<MeasuredPoint>,
+    tried: Vec<Tried>,
+}
+
+impl Search {
+    pub fn new(runs: Runs, measured: Vec<MeasuredPoint>) -> Self {
+        Self {
+            runs,
+            measured,
+            tried: Vec::new(),
+        }
+    }
+
+    pub fn measured(&self) -> &[MeasuredPoint] {
+        &self.measured
+    }
+
+    /// The start in the unit box.
+    pub fn start(&self) -> Vec<f64> {
+        let scaled = |(sought, value): (&Sought, f64)| (value - sought.lower) / width(sought);
+        let parameters = self.runs.parameters().iter();
+        parameters.zip(self.runs.start()).map(scaled).collect()
+    }
+
+    /// The point tried with the least sum of squares.
+    pub fn best(&self) -> Option<(&[f64], &Fit)> {
+        let fits = self
+            .tried
+            .iter()
+            .filter_map(|t| Some((&t.at[..], t.fit.as_ref()?)));
+        fits.min_by(|one, other| one.1.chi_squared().total_cmp(&other.1.chi_squared()))
+    }
+
+    /// The first point tried.
+    pub fn first(&self) -> Option<&Fit> {
+        self.tried.first()?.fit.as_ref()
+    }
+
+    /// The fit at a point of the unit box, by a run unless it was tried before. Collective.
+    ///
+    /// # Errors
+    /// As [`Runs::next`].
+    pub fn at(&mut self, at: &[f64]) -> Result<Option<&Fit>, InverseError> {
+        let known = self.tried.iter().position(|tried| tried.at == at);
+        let place = match known {
+            Some(place) => place,
+            None => {
+                let fit = self.run(at)?;
+                let said = match &fit {
+                    Some(fit) => {
+                        let mean = fit.chi_squared() / self.measured.len() as f64;
+                        format!("  misfit {}\n", number(mean.sqrt()))
+                    }
+                    None => "  not solved to its end\n".to_owned(),
+                };
+                self.runs.show(&said);
+                self.tried.push(Tried {
+                    at: at.to_vec(),
+                    fit,
+                });
+                self.tried.len() - 1
+            }
+        };
+        Ok(self.tried[place].fit.as_ref())
+    }
+
+    fn run(&mut self, at: &[f64]) -> Result<Option<Fit>, InverseError> {
+        let values = self.values(at);
+        let Some(ran) = self.runs.next(&values)? else {
+            return Ok(None);
+        };
+        let forces = self.forces(&ran);
+        let mut columns = Vec::new();
+        for parameter in 0..at.len() {
+            match self.difference(at, parameter, &forces)? {
+                Some(column) => columns.push(column),
+                None => return Ok(None),
+            }
+        }
+        let weighted = forces
+            .iter()
+            .zip(&self.measured)
+            .map(|(force, m)| (force - m.force) / m.uncertainty);
+        Ok(Some(Fit {
+            residual: weighted.collect(),
+            values,
+            columns,
+            folder: ran.folder,
+            records: ran.records,
+        }))
+    }
+
+    /// Weighted derivative of the forces by a scaled parameter, from one more run.
+    fn difference(
+        &mut self,
+        at: &[f64],
+        parameter: usize,
+        forces: &[f64],
+    ) -> Result<Option<Vec<f64>>, InverseError> {
+        let mut beside = at.to_vec();
+        let step = if at[parameter] > 0.5 {
+            -DIFFERENCE
+        } else {
+            DIFFERENCE
+        };
+        beside[parameter] += step;
+        self.runs.show("  difference\n");
+        let Some(ran) = self.runs.next(&self.values(&beside))? else {
+            return Ok(None);
+        };
+        let others = self.forces(&ran);
+        let slope = |((other, force), m): ((&f64, &f64), &MeasuredPoint)| {
+            (other - force) / (step * m.uncertainty)
+        };
+        Ok(Some(
+            others
+                .iter()
+                .zip(forces)
+                .zip(&self.measured)
+                .map(slope)
+                .collect(),
+        ))
+    }
+
+    /// The values of the parameters at a point of the unit box.
+    fn values(&self, at: &[f64]) -> Vec<f64> {
+        let value = |(sought, at): (&Sought, &f64)| {
+            let value = rounded(sought.lower + at * width(sought), DIGITS);
+            value.clamp(sought.lower, sought.upper)
+        };
+        self.runs.parameters().iter().zip(at).map(value).collect()
+    }
+
+    /// Forces at the measured strokes, to the last bit the same on every rank. Collective.
+    fn forces(&self, ran: &Ran) -> Vec<f64> {
+        let mut forces: Vec<f64> = self
+            .measured
+            .iter()
+            .map(|m| at_stroke(&ran.records, m.stroke))
+            .collect();
+        from_first(self.runs.comm(), &mut forces);
+        forces
+    }
+}
+
+/// Width of the bounds of a parameter.
+pub(super) fn width(sought: &Sought) -> f64 {
+    sought.upper - sought.lower
+}
+
+/// The force where a step of the way down has ended at this stroke (mm); steps are made to end there.
+fn at_stroke(records: &[StepRecord], stroke: f64) -> f64 {
+    let distance = |record: &&StepRecord| (record.stroke_mm - stroke).abs();
+    let nearest = records
+        .iter()
+        .min_by(|one, other| distance(one).total_cmp(&distance(other)));
+    nearest.map_or(f64::NAN, |record| record.force_N)
+}
