@@ -14,6 +14,7 @@ pub mod output;
 pub mod plane;
 pub mod ranks;
 pub mod run;
+pub mod sensitivity;
 pub mod system;
 mod text;
 pub mod tool;

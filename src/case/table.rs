@@ -281,9 +281,9 @@ option_table! {
         value: |case| case.inverse.identify.clone(),
     }
     DESIGN: OptionalReal {
-        name: "design", unit: "deg", default: "none", group: Group::Inverse,
+        name: "design", unit: "", default: "none", group: Group::Inverse,
         kind: OptionalReal(Real(Bound::Excluded(0.0), Bound::Excluded(180.0))),
-        meaning: "Wanted angle between the arms after the punch is withdrawn: -parameters are changed until the sheet has it; \
+        meaning: "Wanted angle between the arms in degrees after the punch is withdrawn: -parameters are changed until the sheet has it; \
                   docs/identification.md.",
         value: |case| case.inverse.design,
     }

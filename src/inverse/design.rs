@@ -37,6 +37,9 @@ pub(super) struct Trial {
     /// Changes from the start, as shares of the widths of the bounds.
     #[serde(skip)]
     change: Vec<f64>,
+    /// Derivatives of the angle by them, degrees, where the run has them.
+    #[serde(skip)]
+    slopes: Vec<Option<f64>>,
     pub values: Vec<f64>,
     pub angle_deg: f64,
     pub folder: String,
@@ -193,6 +196,10 @@ impl Search {
             if self.is_found() {
                 return Ok(Found::Within);
             }
+            if let Some(slope) = here.slopes[k] {
+                slopes[k] = slope;
+                continue;
+            }
             let mut change = vec![0.0; n];
             change[k] = if self.upper[k] >= FIRST_CHANGE {
                 FIRST_CHANGE
@@ -223,6 +230,9 @@ impl Search {
             let unforeseen = there.angle_deg - here.angle_deg - dot(&slopes, &step);
             for (slope, part) in slopes.iter_mut().zip(&step) {
                 *slope += unforeseen * part / dot(&step, &step);
+            }
+            for (slope, known) in slopes.iter_mut().zip(&there.slopes) {
+                *slope = known.unwrap_or(*slope);
             }
             here = there;
         }
@@ -278,7 +288,7 @@ impl Search {
             rounded(start + part * width(sought), DIGITS).clamp(sought.lower, sought.upper)
         };
         let values: Vec<f64> = parameters.map(value).collect();
-        let ran = self.runs.next(&values)?;
+        let ran = self.runs.next(&values, true)?;
         let Some((ran, angle_deg)) = ran.and_then(|ran| self.angle(&ran).map(|angle| (ran, angle)))
         else {
             self.runs.show("  not solved to its end\n");
@@ -287,6 +297,7 @@ impl Search {
         self.runs
             .show(&format!("  angle {} deg\n", number(angle_deg)));
         let trial = Trial {
+            slopes: self.slopes(&ran),
             change: change.to_vec(),
             values,
             angle_deg,
@@ -294,6 +305,21 @@ impl Search {
         };
         self.trials.push(trial.clone());
         Ok(Some(trial))
+    }
+
+    /// Derivatives of the angle at the end of the way back by the scaled parameters, where the run has them. Collective.
+    fn slopes(&self, ran: &Ran) -> Vec<Option<f64>> {
+        let table = &ran.derivatives;
+        let slope = |sought: &Sought| {
+            let place = table
+                .parameters
+                .iter()
+                .position(|known| known.name == sought.name)?;
+            let mut slope = [table.rows.last()?.by_parameter.get(place)?.angle * width(sought)];
+            from_first(self.runs.comm(), &mut slope);
+            Some(slope[0])
+        };
+        self.runs.parameters().iter().map(slope).collect()
     }
 
     /// The angle at the end of the way back once the tools have vanished, the same on every rank. Collective.

@@ -9,7 +9,7 @@ use petsc::Session;
 
 use super::InverseError;
 use crate::case::{Case, Inverse, Sought};
-use crate::output::{Monitor, OutputDir, StepRecord};
+use crate::output::{DerivativeTable, Monitor, OutputDir, StepRecord};
 use crate::ranks::agree_in_words;
 use crate::run::{Ending, Springback, conclude, simulate};
 use crate::text::number;
@@ -33,6 +33,8 @@ pub(super) struct Ran {
     pub folder: String,
     pub records: Vec<StepRecord>,
     pub springbacks: Vec<Springback>,
+    /// Of those parameters that have derivatives along a run.
+    pub derivatives: DerivativeTable,
 }
 
 impl Runs {
@@ -62,7 +64,7 @@ impl Runs {
         agree_in_words(comm, log).map_err(InverseError::Agreed)?;
         monitor.show(&replaced);
         let mut case = case.without_search();
-        case.output.quiet = true;
+        case.output.sensitivity.clear();
         Ok(Self {
             case,
             parameters,
@@ -112,12 +114,12 @@ impl Runs {
         self.parameters.iter().map(value).collect()
     }
 
-    /// The next run, with these values of the parameters. `None` if there is no such case or it is not solved to its end.
-    /// Collective.
+    /// The next run, with these values of the parameters, and with its derivatives by those that have them if they are
+    /// `wanted`. `None` if there is no such case or it is not solved to its end. Collective.
     ///
     /// # Errors
     /// If the runs are used up, the run was asked to end, or a file cannot be written; the same on every rank.
-    pub fn next(&mut self, values: &[f64]) -> Result<Option<Ran>, InverseError> {
+    pub fn next(&mut self, values: &[f64], wanted: bool) -> Result<Option<Ran>, InverseError> {
         if self.made == self.most {
             return Err(InverseError::RunsUsedUp);
         }
@@ -130,20 +132,35 @@ impl Runs {
             .collect();
         self.show(&format!("run {:>3}  {}", self.made, text.join(" ")));
         let folder = format!("run-{:03}", self.made);
-        let pairs: Vec<(&str, f64)> = self
-            .parameters
-            .iter()
-            .map(|p| p.name)
-            .zip(values.iter().copied())
-            .collect();
-        let ran = match self.case.with(&pairs) {
-            Ok(case) => self.run(case, &folder)?,
+        match self.case.with(&self.named(values)) {
+            Ok(mut case) => {
+                if wanted {
+                    case.output.sensitivity = self.differentiable(&case);
+                }
+                self.run(case, &folder)
+            }
             Err(error) => {
                 self.show(&format!("  no such case: {error}"));
-                None
+                Ok(None)
             }
-        };
-        Ok(ran)
+        }
+    }
+
+    fn named(&self, values: &[f64]) -> Vec<(&'static str, f64)> {
+        let names = self.parameters.iter().map(|sought| sought.name);
+        names.zip(values.iter().copied()).collect()
+    }
+
+    /// The parameters by which a run of the case can be differentiated.
+    fn differentiable(&self, case: &Case) -> Vec<&'static str> {
+        let mut alone = case.clone();
+        let names = self.parameters.iter().map(|sought| sought.name);
+        names
+            .filter(|name| {
+                alone.output.sensitivity = vec![name];
+                alone.parameters().is_ok()
+            })
+            .collect()
     }
 
     /// A run with these values on a mesh that is `refinement` times as fine; it is none of the search. Collective.
@@ -155,13 +172,7 @@ impl Runs {
         values: &[f64],
         refinement: usize,
     ) -> Result<Option<Ran>, InverseError> {
-        let pairs: Vec<(&str, f64)> = self
-            .parameters
-            .iter()
-            .map(|p| p.name)
-            .zip(values.iter().copied())
-            .collect();
-        let mut case = self.case.with(&pairs)?;
+        let mut case = self.case.with(&self.named(values))?;
         case.discretisation.nx *= refinement;
         case.discretisation.ny *= refinement;
         self.run(case, "confirmation")
@@ -169,11 +180,8 @@ impl Runs {
 
     fn run(&mut self, mut case: Case, folder: &str) -> Result<Option<Ran>, InverseError> {
         let path = self.folder.file(folder);
-        case.output = crate::case::Output {
-            dir: path.display().to_string(),
-            quiet: true,
-            ..self.case.output.clone()
-        };
+        case.output.dir = path.display().to_string();
+        case.output.quiet = true;
         let ran = self.run_and_conclude(&case);
         let (ending, ran) = agree_in_words(&self.comm, ran).map_err(InverseError::Agreed)?;
         match ending {
@@ -190,6 +198,7 @@ impl Runs {
             folder: case.output.dir.clone(),
             records: outcome.recorder.records().to_vec(),
             springbacks: outcome.springbacks.clone(),
+            derivatives: outcome.recorder.derivatives().clone(),
         });
         let ending = conclude(case, outcome, &self.session, &self.comm)?;
         Ok((ending, ran))

@@ -6,6 +6,7 @@ use super::statistics::dot;
 use crate::case::{MeasuredPoint, Sought};
 use crate::output::StepRecord;
 use crate::ranks::from_first;
+use crate::sensitivity::Slopes;
 use crate::text::{number, rounded};
 
 /// Step of a difference between two runs, as a share of the width of the bounds: far above what Newton's tolerance leaves
@@ -124,13 +125,17 @@ impl Search {
 
     fn run(&mut self, at: &[f64]) -> Result<Option<Fit>, InverseError> {
         let values = self.values(at);
-        let Some(ran) = self.runs.next(&values)? else {
+        let Some(ran) = self.runs.next(&values, true)? else {
             return Ok(None);
         };
         let forces = self.forces(&ran);
         let mut columns = Vec::new();
         for parameter in 0..at.len() {
-            match self.difference(at, parameter, &forces)? {
+            let column = match self.derivative(&ran, parameter) {
+                Some(column) => Some(column),
+                None => self.difference(at, parameter, &forces)?,
+            };
+            match column {
                 Some(column) => columns.push(column),
                 None => return Ok(None),
             }
@@ -148,7 +153,19 @@ impl Search {
         }))
     }
 
-    /// Weighted derivative of the forces by a scaled parameter, from one more run.
+    /// Weighted derivative of the forces by a scaled parameter, if the run has it. Collective.
+    fn derivative(&self, ran: &Ran, parameter: usize) -> Option<Vec<f64>> {
+        let sought = &self.runs.parameters()[parameter];
+        let at = |m: &MeasuredPoint| {
+            let slope = slopes_at(ran, sought.name, m.stroke)?.force;
+            Some(slope * width(sought) / m.uncertainty)
+        };
+        let mut column: Vec<f64> = self.measured.iter().map(at).collect::<Option<_>>()?;
+        from_first(self.runs.comm(), &mut column);
+        Some(column)
+    }
+
+    /// The same from one more run.
     fn difference(
         &mut self,
         at: &[f64],
@@ -163,7 +180,7 @@ impl Search {
         };
         beside[parameter] += step;
         self.runs.show("  difference\n");
-        let Some(ran) = self.runs.next(&self.values(&beside))? else {
+        let Some(ran) = self.runs.next(&self.values(&beside), false)? else {
             return Ok(None);
         };
         let others = self.forces(&ran);
@@ -208,9 +225,24 @@ pub(super) fn width(sought: &Sought) -> f64 {
 
 /// The force where a step of the way down has ended at this stroke (mm); steps are made to end there.
 fn at_stroke(records: &[StepRecord], stroke: f64) -> f64 {
-    let distance = |record: &&StepRecord| (record.stroke_mm - stroke).abs();
-    let nearest = records
+    nearest(records.iter().map(|record| record.stroke_mm), stroke)
+        .and_then(|place| records.get(place))
+        .map_or(f64::NAN, |record| record.force_N)
+}
+
+/// The derivatives there by a parameter, if the run has them.
+fn slopes_at<'a>(ran: &'a Ran, name: &str, stroke: f64) -> Option<&'a Slopes> {
+    let table = &ran.derivatives;
+    let parameter = table
+        .parameters
         .iter()
-        .min_by(|one, other| distance(one).total_cmp(&distance(other)));
-    nearest.map_or(f64::NAN, |record| record.force_N)
+        .position(|known| known.name == name)?;
+    let row = nearest(table.rows.iter().map(|row| row.stroke_mm), stroke)?;
+    table.rows.get(row)?.by_parameter.get(parameter)
+}
+
+fn nearest(strokes: impl Iterator<Item = f64>, wanted: f64) -> Option<usize> {
+    let distances = strokes.map(|stroke| (stroke - wanted).abs()).enumerate();
+    let (place, _) = distances.min_by(|one, other| one.1.total_cmp(&other.1))?;
+    Some(place)
 }

@@ -51,6 +51,11 @@ impl Arrays {
         written.map_err(|error| OutputError::hdf5(&self.path, format!("writing {name}"), error))
     }
 
+    /// Whether there is an array with this name.
+    pub fn has(&self, name: &str) -> bool {
+        self.file.link_exists(name)
+    }
+
     /// Reads an array.
     ///
     /// # Errors

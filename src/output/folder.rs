@@ -20,6 +20,10 @@ pub(crate) const FIELDS: &str = "fields.vtkhdf";
 pub(crate) const TOOLS: &str = "tools.vtkhdf";
 /// The contact points.
 pub(crate) const CONTACT: &str = "contact.vtkhdf";
+/// The derivatives of the steps.
+pub(crate) const SENSITIVITY: &str = "sensitivity.csv";
+/// The figure of them.
+const SENSITIVITY_FIGURE: &str = "sensitivity.svg";
 /// How the run ended.
 pub(super) const SUMMARY: &str = "summary.json";
 /// The page about the run.
@@ -100,20 +104,24 @@ impl OutputDir {
         agree(comm, mine)
     }
 
-    /// Removes what an earlier run said about its end, and its checkpoints newer than `step` (all, with none): a run
+    /// Removes what an earlier run said about its end, its derivatives, which not every run writes, and its checkpoints newer than `step` (all, with none): a run
     /// that is killed must not leave another one's good end behind. Not collective.
     ///
     /// # Errors
     /// [`OutputError::Write`] if something cannot be removed.
     pub fn forget(&self, step: Option<u64>) -> Result<(), OutputError> {
         checkpoint::remove_newer(&self.path, step)?;
-        let summary = self.summary();
-        match fs::remove_file(&summary) {
-            Err(error) if error.kind() != ErrorKind::NotFound => {
-                Err(OutputError::write(&summary, error))
+        let figure = self.sensitivity_figure();
+        let png = figure.with_extension("png");
+        for path in [self.summary(), self.sensitivity(), figure, png] {
+            match fs::remove_file(&path) {
+                Err(error) if error.kind() != ErrorKind::NotFound => {
+                    return Err(OutputError::write(&path, error));
+                }
+                _ => {}
             }
-            _ => Ok(()),
         }
+        Ok(())
     }
 
     /// The folder itself.
@@ -164,6 +172,16 @@ impl OutputDir {
     /// `force.svg`, see [`super::plot::force`].
     pub fn force_figure(&self) -> PathBuf {
         self.file(FORCE)
+    }
+
+    /// `sensitivity.csv`, see [`super::derivatives`].
+    pub fn sensitivity(&self) -> PathBuf {
+        self.file(SENSITIVITY)
+    }
+
+    /// `sensitivity.svg`, see [`super::plot::sensitivity`].
+    pub fn sensitivity_figure(&self) -> PathBuf {
+        self.file(SENSITIVITY_FIGURE)
     }
 
     /// `shape-*.svg` with the name of an instant in it, see [`super::plot::shape`].

@@ -10,6 +10,7 @@ mod arrays;
 mod atomic;
 pub mod banner;
 pub mod checkpoint;
+pub mod derivatives;
 pub mod error;
 pub mod folder;
 pub mod history;
@@ -25,6 +26,7 @@ pub mod vtkhdf;
 
 pub use arrays::Arrays;
 pub(crate) use atomic::write_json;
+pub use derivatives::{DerivativeFile, DerivativeRow, DerivativeTable};
 pub use error::OutputError;
 pub(crate) use error::agree;
 pub use folder::OutputDir;

@@ -51,6 +51,24 @@ pub struct Counts {
     pub linear_solves: u64,
 }
 
+/// What is known of the derivatives at the end; the rows are in sensitivity.csv.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SensitivitySummary {
+    /// Derivatives of the opening angles, by the names of the angles and of the parameters, degrees per unit of the
+    /// parameter; null where there is none.
+    pub angles: BTreeMap<String, BTreeMap<&'static str, f64>>,
+    /// What limits them, in sentences.
+    pub notes: Vec<String>,
+    /// Factorisations they took, one a step.
+    pub factorisations: u64,
+    /// Linear systems solved for them.
+    pub linear_solves: u64,
+    /// Processor time of all ranks for what all parameters share, s.
+    pub shared_cpu_s: f64,
+    /// Processor time of all ranks for one parameter, s.
+    pub cpu_s_per_parameter: f64,
+}
+
 /// The worst value of one certificate over the run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct WorstValue {
@@ -145,6 +163,9 @@ pub struct Summary {
     pub angles_deg: BTreeMap<String, f64>,
     /// Root mean square distance of the arm from the straight fit of each of these angles, mm.
     pub angle_fit_residuals_mm: BTreeMap<String, f64>,
+    /// The derivatives, of a run with `-sensitivity`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensitivity: Option<SensitivitySummary>,
     /// Counts over the run.
     pub counts: Counts,
     /// Tolerances by name, units in the names.

@@ -56,4 +56,15 @@ pub enum RestartError {
         /// The options that differ.
         differences: String,
     },
+    /// The checkpoint has not the derivatives that are asked for.
+    #[error(
+        "-restart: the checkpoint {} holds derivatives by these parameters: {found}; use -sensitivity {found}, or run without \
+         -restart", path.display()
+    )]
+    OtherParameters {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Its parameters.
+        found: String,
+    },
 }

@@ -31,7 +31,7 @@ pub use diagnosis::{Chattering, Refusal, ResidualHistory};
 pub use error::{RestartError, RunError};
 pub use ledger::{Counts, Ledger, StepEffort};
 pub use newton::Damping;
-pub use outcome::{Failure, Outcome};
+pub use outcome::{Failure, Outcome, SensitivityEnd};
 pub use recorder::Recorder;
 pub use simulation::Interruption;
 pub use springback::Springback;
@@ -41,6 +41,7 @@ pub use stop_watch::StopCause;
 
 use crate::case::Case;
 use crate::output::OutputDir;
+use crate::sensitivity::Beside;
 use crate::system::{History, Problem, System};
 use ledger::Spent;
 use outcome::why;
@@ -64,6 +65,12 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     defaults::read_options(case, comm)?;
     if case.output.dry_run {
         return dry_run::describe(case, comm).map(|()| None);
+    }
+    let beside = Beside::of(case)?;
+    if let Some(first) = beside.first()
+        && linear::left_to_petsc()?
+    {
+        return Err(linear::no_derivatives(first.parameter.name).into());
     }
     let stop_watch = StopWatch::new(&case.resuming, clock)?;
     // The lock comes before the look at the checkpoints; a refused restart makes no folder.
@@ -93,7 +100,7 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     let simulation = Rc::new(Simulation::new(
         case, system, history, recorder, landmarks, stop_watch, spent,
     )?);
-    let finish = simulation.run(case, resumed.as_ref())?;
+    let finish = simulation.run(case, beside, resumed.as_ref())?;
     // A limit of the user's (-ts_max_steps) is a good end for PETSc, but not for the motion.
     let short = finish.interruption.is_none() && finish.time < motion.end() * (1.0 - 1e-9);
     let suspects = doubtful::given()?;
@@ -116,6 +123,7 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
         failure,
         interruption: finish.interruption,
         springbacks: finish.springbacks,
+        sensitivity: finish.sensitivity,
         factor_solver: finish.factor_solver,
         unknowns,
     }))

@@ -11,6 +11,7 @@ use super::setup::defaults;
 use super::simulation::Interruption;
 use super::springback::Springback;
 use crate::case::Case;
+use crate::sensitivity::ReleasedSlopes;
 use crate::text::number;
 
 /// How a run ended.
@@ -25,6 +26,8 @@ pub struct Outcome {
     pub interruption: Option<Interruption>,
     /// Angles after the tools vanish at the turning point and at the end, where they could be had.
     pub springbacks: Vec<Springback>,
+    /// What the derivatives cost, and those of the released angles; the rows are the recorder's.
+    pub sensitivity: SensitivityEnd,
     /// PETSc's direct solver in use.
     pub factor_solver: Option<String>,
     /// Unknowns over all ranks.
@@ -33,6 +36,15 @@ pub struct Outcome {
     pub cpu_seconds: f64,
     /// Time on the clock, s; likewise.
     pub wall_seconds: f64,
+}
+
+/// The end of the derivatives; all empty without `-sensitivity`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SensitivityEnd {
+    /// Counts and processor times of all ranks, in the order of [`crate::sensitivity::Cost`].
+    pub cost: [f64; 4],
+    /// Of the angles after the tools vanish.
+    pub released: Vec<ReleasedSlopes>,
 }
 
 /// The step that could not be solved.

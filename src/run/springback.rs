@@ -5,6 +5,7 @@ use std::rc::Rc;
 use petsc::VectorRef;
 
 use super::{RunError, StaticPath};
+use crate::sensitivity::{ReleasedState, Sensitivity};
 use crate::system::{History, Measures, Released, System};
 
 /// First step of the tools' forces towards zero, as a share of them.
@@ -35,6 +36,8 @@ pub(super) struct ReleasedSheet {
     t: f64,
     loaded: Measures,
     system: Rc<System>,
+    /// Its material's history before.
+    history: History,
     path: StaticPath,
 }
 
@@ -52,11 +55,13 @@ impl ReleasedSheet {
         let loaded = system.measures(history, t, u, None)?;
         let released = Released::new(system, history, u, 0.0, 1.0)?;
         let system = Rc::new(released.system);
-        let path = StaticPath::new(Rc::clone(&system), released.history, released.unknowns)?;
+        let history = released.history;
+        let path = StaticPath::new(Rc::clone(&system), history.clone(), released.unknowns)?;
         Ok(Self {
             t,
             loaded,
             system,
+            history,
             path,
         })
     }
@@ -65,7 +70,7 @@ impl ReleasedSheet {
     ///
     /// # Errors
     /// If PETSc fails.
-    pub fn spring_back(mut self) -> Result<Option<Springback>, RunError> {
+    pub fn spring_back(&mut self) -> Result<Option<Springback>, RunError> {
         let (mut faded, mut step) = (0.0, FIRST_STEP);
         while faded < 1.0 {
             let next = f64::min(faded + step, 1.0);
@@ -88,5 +93,24 @@ impl ReleasedSheet {
             fit_residual_mm: free.angle_fit_residual,
             plastic_growth: free.max_plastic_strain - self.loaded.max_plastic_strain,
         }))
+    }
+
+    /// Adds the derivatives of the angle it has sprung back to. Collective.
+    ///
+    /// # Errors
+    /// If PETSc fails or an element cannot be evaluated.
+    pub fn differentiate(&self, sensitivity: &mut Sensitivity) -> Result<(), RunError> {
+        let Some(solve) = self.path.solve() else {
+            return Ok(());
+        };
+        let history = self.path.history();
+        Ok(sensitivity.release(&ReleasedState {
+            system: &self.system,
+            solve,
+            history: &history,
+            unknowns: self.path.unknowns(),
+            t_ms: self.t,
+            elastic: *history == self.history,
+        })?)
     }
 }

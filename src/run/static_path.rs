@@ -8,13 +8,14 @@ use petsc::{Snes, SnesReason, Vector, VectorRef};
 use super::RunError;
 use super::newton::Damping;
 use super::setup::LinearSolve;
-use crate::system::{History, System};
+use crate::system::{CondensedSolve, History, System};
 
 /// Solves a system statically at one time after the other, and accepts what converged.
 pub struct StaticPath {
     system: Rc<System>,
     snes: Snes,
     unknowns: Vector,
+    linear: Rc<LinearSolve>,
     progress: Rc<RefCell<Progress>>,
 }
 
@@ -65,6 +66,7 @@ impl StaticPath {
             system,
             snes,
             unknowns,
+            linear,
             progress,
         })
     }
@@ -84,6 +86,11 @@ impl StaticPath {
             self.unknowns.copy_from(&before)?;
         }
         Ok(reason)
+    }
+
+    /// Our own solve with its tangents; none if they are left to PETSc.
+    pub(super) fn solve(&self) -> Option<&CondensedSolve> {
+        self.linear.condensed().map(Rc::as_ref)
     }
 
     /// The last accepted unknowns.

@@ -41,7 +41,7 @@ impl History {
     }
 
     /// The same material without contact.
-    pub(super) fn without_contact(&self) -> Self {
+    pub fn without_contact(&self) -> Self {
         Self {
             gauss_points: self.gauss_points.clone(),
             per_element: self.per_element,
@@ -72,7 +72,7 @@ impl History {
         Ok(next)
     }
 
-    fn advance_friction(&mut self, of: &Subdomain, t: f64, u: &[f64]) {
+    pub(super) fn advance_friction(&mut self, of: &Subdomain, t: f64, u: &[f64]) {
         let young = of.problem.young_modulus;
         for (point, (contact, state)) in of.contacts.iter().zip(&mut self.friction).enumerate() {
             let multiplier = u[of.multiplier(point)];

@@ -9,10 +9,11 @@ use super::subdomain::Subdomain;
 use crate::element::edge_shape;
 use crate::mesh::SurfaceSide;
 use crate::plane::interpolate;
+use crate::tool::Distance;
 
 /// The arm's fit uses the outer sixth of the half sheet: beyond the die's shoulder it is free of
 /// stress, so it is straight unless it yielded before.
-const ARM_START: f64 = 5.0 / 6.0;
+pub(super) const ARM_START: f64 = 5.0 / 6.0;
 /// Penetration is looked for at this many equal steps along each edge: between contact points, too.
 const PENETRATION_PROBES: usize = 48;
 
@@ -110,7 +111,7 @@ impl Subdomain {
             let distance = contact.position(&nodes, t, committed).distance;
             // The history is that of `u`, so its friction is the present one.
             let friction = young * committed.traction;
-            let upward = force * distance.gradient[1] + friction * distance.arc_gradient[1];
+            let upward = upward(force, friction, &distance);
             match contact.side {
                 SurfaceSide::Top => sums.punch_force -= upward,
                 SurfaceSide::Bottom => sums.die_force += upward,
@@ -199,6 +200,11 @@ impl Subdomain {
             }
         }
     }
+}
+
+/// Vertical part of a contact point's normal and friction force on the sheet, N per mm of width.
+pub(super) fn upward(force: f64, friction: f64, distance: &Distance) -> f64 {
+    force * distance.gradient[1] + friction * distance.arc_gradient[1]
 }
 
 impl PartialMeasures {

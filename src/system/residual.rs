@@ -66,7 +66,7 @@ impl Subdomain {
     }
 
     /// Adds the inertia forces of accelerations `a` divided by Young's modulus.
-    fn add_inertia(&self, a: &[f64], out: &mut [f64]) {
+    pub(super) fn add_inertia(&self, a: &[f64], out: &mut [f64]) {
         let scale = self.problem.density / self.problem.young_modulus;
         if scale == 0.0 {
             return;
@@ -83,18 +83,29 @@ impl Subdomain {
     }
 
     fn add_contact(&self, history: &History, t: f64, u: &[f64], out: &mut [f64]) {
-        for (point, (contact, committed)) in self.contacts.iter().zip(&history.friction).enumerate()
-        {
-            let m = self.multiplier(point);
-            let position = self.contact_position(contact, committed, t, u);
-            let traction = contact.law.traction(&position, u[m], committed);
-            let rows = contact.law.rows(&position, u[m], u[m + 1], &traction);
-            for (i, force) in rows.force.iter().enumerate() {
-                out[2 * contact.nodes[i / 2] + i % 2] += force;
-            }
-            out[m] = rows.closure;
-            out[m + 1] = rows.complementarity;
+        for point in 0..self.contacts.len() {
+            self.add_contact_point(history, t, u, point, out);
         }
+    }
+
+    pub(super) fn add_contact_point(
+        &self,
+        history: &History,
+        t: f64,
+        u: &[f64],
+        point: usize,
+        out: &mut [f64],
+    ) {
+        let (contact, committed) = (&self.contacts[point], &history.friction[point]);
+        let m = self.multiplier(point);
+        let position = self.contact_position(contact, committed, t, u);
+        let traction = contact.law.traction(&position, u[m], committed);
+        let rows = contact.law.rows(&position, u[m], u[m + 1], &traction);
+        for (i, force) in rows.force.iter().enumerate() {
+            out[2 * contact.nodes[i / 2] + i % 2] += force;
+        }
+        out[m] = rows.closure;
+        out[m + 1] = rows.complementarity;
     }
 
     /// Internal force of a local element, and its stiffness if it is wanted.

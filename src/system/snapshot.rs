@@ -100,7 +100,7 @@ impl Snapshot {
     }
 }
 
-fn gauss_point(state: &PointState) -> [f64; PER_GAUSS_POINT] {
+pub(super) fn gauss_point(state: &PointState) -> [f64; PER_GAUSS_POINT] {
     let PointState {
         cp_inverse: PlaneTensor { xx, yy, zz, xy },
         equivalent_plastic_strain,
@@ -108,7 +108,7 @@ fn gauss_point(state: &PointState) -> [f64; PER_GAUSS_POINT] {
     [xx, xy, yy, zz, equivalent_plastic_strain]
 }
 
-fn point_state(numbers: &[f64; PER_GAUSS_POINT]) -> PointState {
+pub(super) fn point_state(numbers: &[f64; PER_GAUSS_POINT]) -> PointState {
     let [xx, xy, yy, zz, equivalent_plastic_strain] = *numbers;
     PointState {
         cp_inverse: PlaneTensor { xx, yy, zz, xy },
@@ -116,7 +116,7 @@ fn point_state(numbers: &[f64; PER_GAUSS_POINT]) -> PointState {
     }
 }
 
-fn contact_point(state: &FrictionState) -> [f64; PER_CONTACT_POINT] {
+pub(super) fn contact_point(state: &FrictionState) -> [f64; PER_CONTACT_POINT] {
     let FrictionState {
         traction,
         arc_length,
@@ -125,7 +125,7 @@ fn contact_point(state: &FrictionState) -> [f64; PER_CONTACT_POINT] {
     [traction, arc_length, a[0], a[1], b[0], b[1], c[0], c[1]]
 }
 
-fn friction_state(numbers: &[f64; PER_CONTACT_POINT]) -> FrictionState {
+pub(super) fn friction_state(numbers: &[f64; PER_CONTACT_POINT]) -> FrictionState {
     let [traction, arc_length, a, b, c, d, e, f] = *numbers;
     FrictionState {
         traction,

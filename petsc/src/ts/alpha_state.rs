@@ -82,6 +82,11 @@ impl Alpha2State {
         Ok(())
     }
 
+    /// Length and parameters of the last step.
+    pub fn last_step(&self) -> (f64, AlphaParameters) {
+        (self.dt, self.params)
+    }
+
     /// Whether the velocity that belongs to the acceleration had PETSc's own bits in every step, on
     /// this rank.
     pub fn is_exact(&self) -> bool {

@@ -10,6 +10,7 @@ mod force;
 mod geometry;
 mod model;
 mod png;
+mod sensitivity;
 mod shape;
 
 use std::path::Path;
@@ -17,9 +18,10 @@ use std::path::Path;
 pub use elements::{DeformedElement, gather_elements};
 pub use force::force_svg;
 pub use model::model_svg;
+pub use sensitivity::sensitivity_svg;
 pub use shape::{Shape, shape_svg};
 
-use super::{OutputError, StepRecord, atomic};
+use super::{DerivativeTable, OutputError, StepRecord, atomic};
 use crate::case::{Case, ReferenceForce};
 
 /// Draws [`force_svg`] into a file, and as PNG beside it.
@@ -54,6 +56,14 @@ pub fn model(
     punch: &[[f64; 2]],
 ) -> Result<(), OutputError> {
     store(path.as_ref(), model_svg(case, die, punch))
+}
+
+/// Draws [`sensitivity_svg`] into a file, and as PNG beside it.
+///
+/// # Errors
+/// [`OutputError::Figure`] if it cannot be drawn, [`OutputError::Write`] if it cannot be written.
+pub fn sensitivity(path: impl AsRef<Path>, table: &DerivativeTable) -> Result<(), OutputError> {
+    store(path.as_ref(), sensitivity_svg(table))
 }
 
 fn store(path: &Path, svg: Result<String, String>) -> Result<(), OutputError> {

@@ -2,6 +2,7 @@
 //! Never: how a checkpoint lies on the disk (`output::checkpoint`), or how the time stepper takes it over
 //! (`simulation::resume`).
 
+mod derivatives;
 mod state;
 
 use std::collections::HashMap;
@@ -15,6 +16,7 @@ use crate::case::{Case, Difference, Restart};
 use crate::material::Hardening;
 use crate::output::{Arrays, OutputError, agree, checkpoint};
 use crate::ranks::broadcast_bytes;
+use crate::sensitivity::Kept;
 use crate::system::{History, System};
 
 pub(super) use state::RunState;
@@ -45,6 +47,11 @@ impl Resumed {
     /// Time of the last of them, ms.
     pub fn time(&self) -> f64 {
         self.state.time
+    }
+
+    /// The derivatives, if it holds any.
+    pub(super) fn derivatives(&self) -> Option<&Kept> {
+        self.state.derivatives.as_ref()
     }
 
     /// The history of the system's material and contact points.
@@ -106,6 +113,7 @@ pub(super) fn open(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Resu
     let path = PathBuf::from(choice.path);
     let read = Arrays::open(&path.join(STATE)).and_then(|file| RunState::get(&file));
     let state = agree(comm, read)?;
+    derivatives::check(case, &path, &state)?;
     let mut notes: Vec<String> = choice.notes.lines().map(str::to_owned).collect();
     notes.extend(compare(case, &path, &state)?);
     Ok(Some(Resumed { path, state, notes }))

@@ -2,9 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use super::derivatives;
 use crate::output::{Arrays, OutputError};
 use crate::run::ledger::{Counts, LEDGER_NUMBERS};
 use crate::run::springback::Springback;
+use crate::sensitivity::Kept;
 use crate::system::Snapshot;
 
 /// A run after an accepted step. Vectors are in mesh order, see [`Snapshot`].
@@ -39,6 +41,8 @@ pub(in crate::run) struct RunState {
     pub spent: [f64; 2],
     /// Node of each row of the sheet's field file, and contact point of each row of the contact points'.
     pub file_rows: [Vec<u64>; 2],
+    /// Of a run with `-sensitivity`.
+    pub derivatives: Option<Kept>,
 }
 
 impl RunState {
@@ -79,7 +83,10 @@ impl RunState {
         to.put("springbacks", &springbacks)?;
         to.put("spent", &self.spent)?;
         to.put("node_of_row", &self.file_rows[0])?;
-        to.put("contact_point_of_row", &self.file_rows[1])
+        to.put("contact_point_of_row", &self.file_rows[1])?;
+        self.derivatives
+            .as_ref()
+            .map_or(Ok(()), |kept| derivatives::put(kept, to))
     }
 
     /// Reads it back.
@@ -125,6 +132,7 @@ impl RunState {
             springbacks: springbacks.as_chunks().0.iter().map(springback).collect(),
             spent: from.get_exactly("spent")?,
             file_rows: [from.get("node_of_row")?, from.get("contact_point_of_row")?],
+            derivatives: derivatives::get(from)?,
         })
     }
 }

@@ -4,6 +4,7 @@ use crate::case::Case;
 use crate::output::StepRecord;
 use crate::run::outcome::Outcome;
 use crate::text::number;
+use crate::tool::PunchMotion;
 
 /// An angle of the run, with a name that says how the tools went away.
 pub(super) struct NamedAngle {
@@ -35,12 +36,16 @@ pub(super) fn angles(case: &Case, outcome: &Outcome) -> Vec<NamedAngle> {
         angles.push(recorded("end of the motion", record));
     }
     for springback in &outcome.springbacks {
-        let depth = number(motion.depth(springback.t_ms));
         angles.push(NamedAngle {
-            name: format!("tools vanish at {depth} mm"),
+            name: released_name(&motion, springback.t_ms),
             degrees: springback.released_angle_deg,
             fit_residual: springback.fit_residual_mm,
         });
     }
     angles
+}
+
+/// The name of the angle of a sheet whose tools vanished at this time (ms).
+pub(super) fn released_name(motion: &PunchMotion, t_ms: f64) -> String {
+    format!("tools vanish at {} mm", number(motion.depth(t_ms)))
 }

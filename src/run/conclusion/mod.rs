@@ -5,6 +5,7 @@ mod angles;
 mod banner;
 mod inputs;
 mod judgement;
+mod sensitivity;
 mod summary;
 
 use mpi::traits::Communicator;
@@ -45,6 +46,7 @@ pub fn conclude(
     if comm.rank() == 0 {
         summary.write(outcome.recorder.folder().summary())?;
         outcome.recorder.force_figure(&reference)?;
+        outcome.recorder.derivative_figure()?;
     }
     let mut text = if verdicts.rows.is_empty() {
         "\n".to_owned()

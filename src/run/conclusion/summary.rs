@@ -6,8 +6,8 @@ use mpi::traits::Communicator;
 use petsc::Session;
 
 use super::angles::{NamedAngle, angles};
-use super::inputs;
 use super::judgement::{BALANCE_LIMIT, CONE_LIMIT, TENSION_LIMIT, WORK_LIMIT};
+use super::{inputs, sensitivity};
 use crate::case::{Case, CaseError};
 use crate::output::VerdictTable;
 use crate::output::summary::{Counts, Provenance, Status, Summary, Timing, worst_values};
@@ -50,6 +50,7 @@ pub(super) fn summarise(
         last: records.last().copied(),
         angles_deg: by_name(|angle| angle.degrees),
         angle_fit_residuals_mm: by_name(|angle| angle.fit_residual),
+        sensitivity: sensitivity::summarise(case, outcome),
         counts: Counts {
             steps: outcome.counts.steps,
             refused_solves: outcome.counts.refused,

@@ -2,6 +2,7 @@
 //! writers of the output.
 //! Never: how a file is written, or a choice of the run.
 
+mod derivatives;
 mod figures;
 
 use std::io::stdout;
@@ -14,8 +15,8 @@ use crate::case::{Case, ReferenceForce};
 use crate::output::folder::{CONTACT, FIELDS, HISTORY, TOOLS};
 use crate::output::plot::{self, DeformedElement, gather_elements};
 use crate::output::{
-    Arrays, ContactFile, History, Monitor, OutputDir, OutputError, SheetFile, SheetPart,
-    StepRecord, ToolsFile, agree, checkpoint, history,
+    Arrays, ContactFile, DerivativeFile, DerivativeTable, History, Monitor, OutputDir, OutputError,
+    SheetFile, SheetPart, StepRecord, ToolsFile, agree, checkpoint, history,
 };
 use crate::system::{ContactPointSample, NodeSample, System};
 use crate::tool::PunchMotion;
@@ -38,6 +39,9 @@ pub struct Recorder {
     motion: PunchMotion,
     every: usize,
     records: Vec<StepRecord>,
+    derivatives: DerivativeTable,
+    /// On rank 0 of a run with derivatives only.
+    derivative_file: Option<DerivativeFile>,
 }
 
 impl Recorder {
@@ -101,7 +105,10 @@ impl Recorder {
             every: case.output.every,
             folder,
             records: Vec::new(),
+            derivatives: DerivativeTable::default(),
+            derivative_file: None,
         };
+        this.open_derivatives(case, resumed, comm)?;
         if let (Some(earlier), Some([nodes, points])) = (resumed, rows) {
             let earlier = &earlier.path;
             this.records = agree(comm, history::read(earlier.join(HISTORY)))?;
@@ -133,7 +140,7 @@ impl Recorder {
                 std::fs::copy(self.folder.file(name), &path)
                     .map_err(|error| OutputError::write(&path, error))?;
             }
-            Ok(())
+            self.copy_derivatives(to)
         };
         let mine = match self.history {
             Some(_) => checkpoint::write(self.folder.path(), step, fill),

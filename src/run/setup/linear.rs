@@ -8,7 +8,7 @@ use mpi::traits::Communicator;
 use petsc::{CallbackError, Failure, Matrix, MatrixRef, SnesRef, VectorRef, options};
 
 use super::doubtful::value;
-use crate::case::condensed_option as condensed;
+use crate::case::{CaseError, condensed_option as condensed};
 use crate::system::{
     CondensedMethod, CondensedSolve, EvaluationError, History, JacobianEntries, SolverChoice,
     System,
@@ -108,19 +108,24 @@ const NEED_ENTRIES: &[&str] = &[
 pub(in crate::run) struct LinearSolve {
     system: Rc<System>,
     entries: RefCell<JacobianEntries>,
-    condensed: Option<CondensedSolve>,
+    condensed: Option<Rc<CondensedSolve>>,
 }
 
 impl LinearSolve {
     /// Decides by the options, and sets the defaults of what is chosen. Collective.
     pub fn chosen(system: &Rc<System>) -> petsc::Result<Rc<Self>> {
         let choice = choose(system.comm())?;
-        let condensed = choice.map(|choice| CondensedSolve::new(system, choice));
+        let condensed = choice.map(|choice| CondensedSolve::new(system, choice).map(Rc::new));
         Ok(Rc::new(Self {
             entries: RefCell::new(system.jacobian_entries()),
             condensed: condensed.transpose()?,
             system: Rc::clone(system),
         }))
+    }
+
+    /// Our own solve; none if the linear systems are left to PETSc.
+    pub fn condensed(&self) -> Option<&Rc<CondensedSolve>> {
+        self.condensed.as_ref()
     }
 
     /// The Jacobian's matrix: without entries if nobody reads them.
@@ -235,8 +240,18 @@ fn choose(comm: &SimpleCommunicator) -> petsc::Result<Option<SolverChoice>> {
     }))
 }
 
+/// Why a run whose linear systems are left to PETSc has no derivatives.
+pub(in crate::run) fn no_derivatives(name: &'static str) -> CaseError {
+    CaseError::NoDerivative {
+        name,
+        reason: "the linear systems are left to PETSc, and derivatives need the program's own solve; leave out \
+                 -sensitivity, or -pc_type and -snes_type"
+            .to_owned(),
+    }
+}
+
 /// Whether the options leave the linear systems to PETSc.
-pub(super) fn left_to_petsc() -> petsc::Result<bool> {
+pub(in crate::run) fn left_to_petsc() -> petsc::Result<bool> {
     let other_solver = value("snes_type")?.is_some_and(|given| given != SOLVER);
     Ok(options::is_given(LEFT_TO_PETSC)? || other_solver)
 }

@@ -4,6 +4,7 @@ use petsc::{Alpha2State, Vector, VectorRef};
 
 use crate::run::ledger::{Counts, Ledger};
 use crate::run::springback::Springback;
+use crate::sensitivity::{AcceptedStep, Inertia};
 use crate::system::{AcceptedState, History, System, SystemError, Work};
 use crate::tool::PunchMotion;
 
@@ -96,6 +97,31 @@ impl Accepted {
             acceleration: self.rates.as_ref().map(Alpha2State::stage_acceleration),
         };
         system.work(&from, &to)
+    }
+
+    /// The step that has just led to the solution at time `t` (ms) with this history, as the derivatives see it. The rates
+    /// are those at its end.
+    pub fn differentiable_step<'a>(
+        &'a self,
+        history: &'a History,
+        t: f64,
+        solution: &'a VectorRef,
+    ) -> AcceptedStep<'a> {
+        let inertia = self.rates.as_ref().map(|rates| {
+            let (dt, parameters) = rates.last_step();
+            Inertia {
+                dt,
+                parameters,
+                stage_acceleration: rates.stage_acceleration(),
+            }
+        });
+        AcceptedStep {
+            before: &self.history,
+            after: history,
+            t,
+            unknowns: solution,
+            inertia,
+        }
     }
 
     /// The largest displacement that a step of length `dt` (ms) to time `t` is expected to bring, mm: that of the

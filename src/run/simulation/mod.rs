@@ -7,6 +7,7 @@ mod equations;
 mod interruption;
 mod progress;
 mod resume;
+mod sensitivity;
 mod solve;
 mod step;
 
@@ -20,12 +21,14 @@ use super::RunError;
 use super::checkpoint::{Resumed, RunState, hardening_checksum};
 use super::diagnosis::Refusal;
 use super::ledger::{Counts, Spent};
+use super::outcome::SensitivityEnd;
 use super::recorder::Recorder;
 use super::setup::{LinearSolve, defaults};
 use super::springback::Springback;
 use super::step_size::StepControl;
 use super::stop_watch::StopWatch;
 use crate::case::{Case, Dynamics};
+use crate::sensitivity::Beside;
 use crate::system::{History, System};
 use crate::tool::PunchMotion;
 use accepted::Accepted;
@@ -68,6 +71,7 @@ pub(super) struct Finish {
     pub interruption: Option<Interruption>,
     /// The state before a step that could not be solved.
     pub checkpoint: Option<PathBuf>,
+    pub sensitivity: SensitivityEnd,
     /// PETSc's direct solver in use.
     pub factor_solver: Option<String>,
 }
@@ -88,6 +92,7 @@ impl Simulation {
             accepted: Accepted::start(system.initial_unknowns()?, history),
             attempt: Attempt::default(),
             refusals: Vec::new(),
+            sensitivity: None,
             control: StepControl::new(stepping.dt_initial, stepping.dt_max, landmarks),
             stop_watch,
             recorder,
@@ -117,6 +122,7 @@ impl Simulation {
     pub(super) fn run(
         self: &Rc<Self>,
         case: &Case,
+        beside: Vec<Beside>,
         resumed: Option<&Resumed>,
     ) -> Result<Finish, RunError> {
         let system = &self.settings.system;
@@ -132,6 +138,7 @@ impl Simulation {
         ts.snes_mut()?.set_variable_bounds(&lower, &upper)?;
         ts.set_max_time(self.progress.borrow().control.end())?;
         self.begin(&mut ts, resumed)?;
+        self.differentiate(&linear, beside, resumed)?;
         let reason = self.solve(&mut ts)?;
         let checkpoint = self.save_before_failure(reason)?;
         let factor_solver = linear.factor_solver(ts.snes()?)?;
@@ -144,6 +151,7 @@ impl Simulation {
             springbacks: std::mem::take(&mut progress.accepted.springbacks),
             interruption: progress.interruption.take(),
             checkpoint,
+            sensitivity: progress.sensitivity_end(system.comm()),
             factor_solver,
         })
     }

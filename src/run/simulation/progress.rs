@@ -8,6 +8,7 @@ use crate::run::diagnosis::Refusal;
 use crate::run::recorder::Recorder;
 use crate::run::step_size::StepControl;
 use crate::run::stop_watch::StopWatch;
+use crate::sensitivity::Sensitivity;
 
 /// Everything of a run that changes. It is borrowed for a moment at a time: never across a call of PETSc that can call
 /// back.
@@ -16,6 +17,8 @@ pub(in crate::run) struct Progress {
     pub attempt: Attempt,
     /// Refused solves of the step being tried.
     pub refusals: Vec<Refusal>,
+    /// The derivatives, if the case asks for any.
+    pub sensitivity: Option<Sensitivity>,
     pub control: StepControl,
     pub stop_watch: StopWatch,
     pub recorder: Recorder,

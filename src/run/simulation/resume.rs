@@ -14,6 +14,7 @@ use crate::ranks::lowest_failing;
 use crate::run::RunError;
 use crate::run::checkpoint::{Resumed, RunState};
 use crate::run::stop_watch::Order;
+use crate::sensitivity::Sensitivity;
 use crate::system::{MeshOrderError, Snapshot};
 
 impl Simulation {
@@ -108,6 +109,11 @@ impl Simulation {
             counts: accepted.counts,
             springbacks: accepted.springbacks.clone(),
             spent: self.settings.spent.so_far(system.comm()),
+            derivatives: progress
+                .sensitivity
+                .as_ref()
+                .map(Sensitivity::keep)
+                .transpose()?,
             file_rows: system.file_rows(),
             ..self.settings.identity.clone()
         })

@@ -56,6 +56,13 @@ impl Simulation {
             rates.accepted(ts)?;
         }
         let work = accepted.work_of_step(system, &history, t, solution)?;
+        let slopes = match &mut progress.sensitivity {
+            Some(sensitivity) => {
+                let step = accepted.differentiable_step(&history, t, solution);
+                Some(sensitivity.step(&step)?)
+            }
+            None => None,
+        };
         accepted.history = history;
         let measures = match &accepted.rates {
             Some(rates) => {
@@ -78,6 +85,10 @@ impl Simulation {
         };
         let record = accepted.ledger.record(&effort, &measures, &work);
         progress.recorder.step(&record, system.comm())?;
+        if let Some(slopes) = slopes {
+            let recorder = &mut progress.recorder;
+            recorder.derivatives_of_step(&record, slopes, system.comm())?;
+        }
         let turned = progress.control.is_at(t, self.settings.motion.time_load);
         accepted.move_on(solution, t, dt, turned)?;
         Ok(record)
@@ -85,13 +96,16 @@ impl Simulation {
 
     /// Finds out to where the sheet would spring back from here.
     fn release_tools(&self, t: f64, solution: &VectorRef) -> Result<(), CallbackError> {
-        let sheet = {
+        let mut sheet = {
             let history = &self.progress.borrow().accepted.history;
             ReleasedSheet::new(&self.settings.system, history, t, solution)?
         };
         let found = sheet.spring_back()?;
-        let accepted = &mut self.progress.borrow_mut().accepted;
-        accepted.springbacks.extend(found);
+        let progress = &mut *self.progress.borrow_mut();
+        if let (Some(_), Some(sensitivity)) = (&found, &mut progress.sensitivity) {
+            sheet.differentiate(sensitivity)?;
+        }
+        progress.accepted.springbacks.extend(found);
         Ok(())
     }
 

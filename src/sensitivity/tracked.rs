@@ -1,0 +1,104 @@
+//! The derivatives of the state of the sheet by one parameter, from step to step.
+
+use petsc::{AlphaParameters, Vector};
+
+use super::Beside;
+use crate::case::Parameter;
+use crate::system::{History, System, Variation};
+
+/// By one parameter.
+pub(super) struct Tracked {
+    pub parameter: Parameter,
+    pub variation: Variation,
+    /// Of the unknowns.
+    pub unknowns: Vector,
+    /// Of the nodes' velocities and accelerations; not used in statics.
+    pub velocity: Vector,
+    pub acceleration: Vector,
+    pub history: History,
+}
+
+/// Length and parameters of a step of the generalized-alpha method, which make its acceleration
+/// `a_1 = past a_0 + change (u_1 - u_0 - dt v_0)`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scheme {
+    dt: f64,
+    parameters: AlphaParameters,
+}
+
+impl Scheme {
+    pub fn new(dt: f64, parameters: AlphaParameters) -> Self {
+        Self { dt, parameters }
+    }
+
+    fn past(&self) -> f64 {
+        let beta = self.parameters.beta;
+        -(1.0 - 2.0 * beta) / (2.0 * beta)
+    }
+
+    fn change(&self) -> f64 {
+        1.0 / (self.dt * self.dt * self.parameters.beta)
+    }
+
+    /// Derivative of the acceleration in the equations by the unknowns, 1/ms².
+    pub fn shift(&self) -> f64 {
+        self.parameters.alpha_m * self.change()
+    }
+}
+
+impl Tracked {
+    /// At the start of a run: the sheet is at rest whatever the parameter is.
+    pub fn start(system: &System, beside: Beside) -> petsc::Result<Self> {
+        let parameter = beside.parameter;
+        let half_width = parameter.value * crate::system::SHARE;
+        let variation = system.variation(beside.problems, half_width);
+        Ok(Self {
+            parameter,
+            history: variation.virgin_slope(),
+            variation,
+            unknowns: system.vector()?,
+            velocity: system.vector()?,
+            acceleration: system.vector()?,
+        })
+    }
+
+    /// Derivative of the acceleration in the equations of a step that leaves those of the unknowns as they are, for the
+    /// `count` displacements this rank owns.
+    pub fn guess_acceleration(
+        &self,
+        scheme: &Scheme,
+        count: usize,
+        out: &mut Vector,
+    ) -> petsc::Result<()> {
+        let (v, a) = (self.velocity.read()?, self.acceleration.read()?);
+        let mut out = out.write()?;
+        let alpha = scheme.parameters.alpha_m;
+        for i in 0..count {
+            let end = scheme.past() * a[i] - scheme.change() * scheme.dt * v[i];
+            out[i] = a[i] + alpha * (end - a[i]);
+        }
+        Ok(())
+    }
+
+    /// Takes the derivatives of the unknowns at the end of a step over.
+    pub fn move_on(
+        &mut self,
+        unknowns: Vector,
+        scheme: Option<&Scheme>,
+        count: usize,
+    ) -> petsc::Result<()> {
+        let before = std::mem::replace(&mut self.unknowns, unknowns);
+        let Some(scheme) = scheme else {
+            return Ok(());
+        };
+        let (u, before) = (self.unknowns.read()?, before.read()?);
+        let (mut v, mut a) = (self.velocity.write()?, self.acceleration.write()?);
+        let (dt, gamma) = (scheme.dt, scheme.parameters.gamma);
+        for i in 0..count {
+            let end = scheme.past() * a[i] + scheme.change() * (u[i] - before[i] - dt * v[i]);
+            v[i] += dt * ((1.0 - gamma) * a[i] + gamma * end);
+            a[i] = end;
+        }
+        Ok(())
+    }
+}
