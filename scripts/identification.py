@@ -18,7 +18,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAM = os.environ.get("SSNP155", str(ROOT / "target/release/ssnp155"))
 RESULTS = ROOT / "results-identification"
-STROKES = [0.5 * i for i in range(1, 41)]  # mm, every half millimetre down to 20
+STROKES = [0.25 * i for i in range(1, 109)]  # mm, every quarter of a millimetre down to 27
 TRUE = {"friction_coefficient": 0.1342, "hollomon_k": 550.4, "hollomon_n": 0.223}
 BOUNDS = {"friction_coefficient": (0, 0.5), "hollomon_k": (200, 1000), "hollomon_n": (0.05, 0.5)}
 # Every start is 30 % off, none on the same side as all others.

@@ -160,8 +160,10 @@ impl TaoRef {
         check(unsafe { sys::TaoSetVariableBounds(self.raw(), lower.raw(), upper.raw()) })
     }
 
-    /// Ends the search where the norm of the gradient of `|r|²/2` (at a bound: of its admissible part) is
-    /// below `absolute`, and nowhere else; `-tao_gatol` and its like go over it.
+    /// Ends the search where the norm of the gradient of `|r|²/2` is below `absolute`, and nowhere else;
+    /// `-tao_gatol` and its like go over it. Where an unknown is nearer to its bound than its gradient is
+    /// large, PETSc counts that distance (the function of Fischer), so the tolerance has to be small
+    /// against the distances between the bounds.
     ///
     /// # Errors
     /// If PETSc fails.

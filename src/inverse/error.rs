@@ -33,6 +33,9 @@ pub enum InverseError {
     /// The allowed runs are used up.
     #[error("the runs that -most_runs allows are used up")]
     RunsUsedUp,
+    /// The best fit is near enough; it ends the optimiser and not the search.
+    #[error("the best fit is near enough")]
+    Near,
     /// A run was ended on request.
     #[error("a run was asked to end")]
     Interrupted,

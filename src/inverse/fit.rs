@@ -23,9 +23,13 @@ const DEFAULTS: &[(&str, &str)] = &[
     ("tao_brgn_subsolver_tao_bnk_ksp_rtol", "1e-12"),
 ];
 
+/// Of the norm of the gradient by the scaled parameters.
+const GRADIENT_TOLERANCE: f64 = 1e-6;
+
 /// Why the search ended.
 pub(super) enum Ended {
     ByPetsc(TaoReason),
+    Near,
     RunsUsedUp,
 }
 
@@ -33,6 +37,7 @@ impl Ended {
     pub fn sentence(&self) -> String {
         match self {
             Self::ByPetsc(reason) => reason.sentence().to_owned(),
+            Self::Near => InverseError::Near.to_string(),
             Self::RunsUsedUp => InverseError::RunsUsedUp.to_string(),
         }
     }
@@ -49,12 +54,15 @@ pub(super) fn read_options() -> Result<(), InverseError> {
     Ok(Tao::new(&SimpleCommunicator::self_comm())?.set_from_options()?)
 }
 
-/// Goes from the start of the search to the least sum of squares; all that was tried stays in the search. Ends where the
-/// norm of the gradient is below `tolerance`. Collective.
+/// Goes from the start of the search to the least sum of squares, or to where it is this `near` in standard errors; all that
+/// was tried stays in the search. Collective.
+///
+/// PETSc's own measure is the norm of the gradient where that is small against the distance from the bounds, which knows no
+/// uncertainty: its tolerance only ends what cannot be made better.
 ///
 /// # Errors
 /// If a run is refused or PETSc fails.
-pub(super) fn fit(search: &Rc<RefCell<Search>>, tolerance: f64) -> Result<Ended, InverseError> {
+pub(super) fn fit(search: &Rc<RefCell<Search>>, near: f64) -> Result<Ended, InverseError> {
     let alone = SimpleCommunicator::self_comm();
     let start = search.borrow().start();
     let (rows, columns) = (search.borrow().measured().len(), start.len());
@@ -70,11 +78,12 @@ pub(super) fn fit(search: &Rc<RefCell<Search>>, tolerance: f64) -> Result<Ended,
     let template = Vector::new(&alone, rows)?;
     tao.set_residual(&template, move |x, r| {
         let at = x.read()?.to_vec();
-        match shared.borrow_mut().at(&at)? {
-            Some(fit) => r.write()?.copy_from_slice(&fit.residual),
-            None => return Err(Failure::Domain),
+        let mut search = shared.borrow_mut();
+        let fit = search.at(&at)?.ok_or(Failure::Domain)?;
+        if fit.way_left() <= near {
+            return Err(InverseError::Near.into());
         }
-        Ok(())
+        Ok(r.write()?.copy_from_slice(&fit.residual))
     })?;
     let (m, n) = (rows as i32, columns as i32);
     let at_row: Vec<i32> = (0..m).flat_map(|row| (0..n).map(move |_| row)).collect();
@@ -89,7 +98,7 @@ pub(super) fn fit(search: &Rc<RefCell<Search>>, tolerance: f64) -> Result<Ended,
             .ok_or("a derivative where there is no run")?;
         Ok(matrix.set_values_coo(&fit.entries())?)
     })?;
-    tao.set_gradient_tolerance(tolerance)?;
+    tao.set_gradient_tolerance(GRADIENT_TOLERANCE)?;
     tao.set_from_options()?;
     match tao.solve(&mut x) {
         Ok(reason) => Ok(Ended::ByPetsc(reason)),
@@ -97,6 +106,7 @@ pub(super) fn fit(search: &Rc<RefCell<Search>>, tolerance: f64) -> Result<Ended,
             |source| Err(petsc::Error::Callback { source, traceback }.into()),
             |error| match error {
                 InverseError::RunsUsedUp => Ok(Ended::RunsUsedUp),
+                InverseError::Near => Ok(Ended::Near),
                 error => Err(error),
             },
         ),

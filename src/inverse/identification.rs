@@ -11,20 +11,15 @@ use serde::Serialize;
 use super::fit::{Ended, fit, read_options};
 use super::report;
 use super::runs::Runs;
-use super::search::{Fit, Search, width};
+use super::search::{Fit, LEAST_SINGULAR_VALUE, Search, stretch};
 use super::{InverseError, Statistics};
 use crate::case::{Case, MeasuredPoint, Sought, read_measured};
 use crate::output::{Tolerance, VerdictRow, VerdictTable};
 use crate::ranks::agree_in_words;
 use crate::run::{Ending, refuse_bad_options};
 
-/// A parameter counts as identified from this ratio of the width of its bounds to its standard error on, and a direction
-/// from this singular value on: bounds alone, every value between them equally likely, are worth √12 = 3.5.
-pub(super) const LEAST_SINGULAR_VALUE: f64 = 4.0;
 /// How far the search may stop from the least sum of squares, in standard errors.
 const FARTHEST: f64 = 0.1;
-/// The search is asked for more than that.
-const RESERVE: f64 = 0.2;
 /// The upper 0.1 % of the normal distribution.
 const UNLIKELY: f64 = 3.09;
 
@@ -38,6 +33,8 @@ pub(super) struct Estimate {
     pub start: f64,
     pub estimate: f64,
     pub standard_error: f64,
+    /// The standard error from which on it does not count as identified.
+    pub longest_error: f64,
     pub identified: bool,
     pub at_bound: bool,
 }
@@ -126,11 +123,7 @@ fn loading_only(case: &Case, measured: &[MeasuredPoint]) -> Result<Case, Inverse
 
 fn look(search: &Rc<RefCell<Search>>) -> Result<Ended, InverseError> {
     let start = search.borrow().start();
-    let statistics = search
-        .borrow_mut()
-        .at(&start)?
-        .map(|fit| Statistics::of(&fit.columns));
-    let Some(statistics) = statistics else {
+    if search.borrow_mut().at(&start)?.is_none() {
         let folder = search
             .borrow()
             .runs
@@ -139,26 +132,21 @@ fn look(search: &Rc<RefCell<Search>>) -> Result<Ended, InverseError> {
             .display()
             .to_string();
         return Err(InverseError::NoStart { folder });
-    };
-    // The gradient along a direction, divided by its singular value, is the way left in standard errors.
-    let weakest = statistics
-        .singular_values
-        .last()
-        .copied()
-        .unwrap_or_default();
-    fit(
-        search,
-        RESERVE * FARTHEST * weakest.max(LEAST_SINGULAR_VALUE),
-    )
+    }
+    fit(search, FARTHEST)
 }
 
 fn conclude(path: &str, ended: &Ended, search: &mut Search) -> Result<Ending, InverseError> {
-    let Some((at, best)) = search.best() else {
+    let best = match ended {
+        Ended::Near => search.last(),
+        _ => search.best(),
+    };
+    let Some(best) = best else {
         return Err(InverseError::Agreed(
             "no run was solved to its end".to_owned(),
         ));
     };
-    let found = Identification::new(path, ended, search, at, best);
+    let found = Identification::new(path, ended, search, best);
     let start = search.first().map_or(&best.records, |fit| &fit.records);
     let figure = report::Figure {
         best: &best.records,
@@ -180,10 +168,12 @@ fn conclude(path: &str, ended: &Ended, search: &mut Search) -> Result<Ending, In
 }
 
 impl Identification {
-    fn new(path: &str, ended: &Ended, search: &Search, at: &[f64], best: &Fit) -> Self {
+    fn new(path: &str, ended: &Ended, search: &Search, best: &Fit) -> Self {
         let sought = search.runs.parameters();
         let statistics = Statistics::of(&best.columns);
         let errors = statistics.standard_errors();
+        let with_value = sought.iter().zip(&best.values);
+        let stretches: Vec<f64> = with_value.map(|(s, value)| stretch(s, *value)).collect();
         let estimate = |k: usize, s: &Sought| Estimate {
             name: s.name,
             unit: s.unit,
@@ -191,18 +181,18 @@ impl Identification {
             upper: s.upper,
             start: search.runs.start()[k],
             estimate: best.values[k],
-            standard_error: errors[k] * width(s),
+            standard_error: errors[k] * stretches[k],
+            longest_error: stretches[k] / LEAST_SINGULAR_VALUE,
             identified: errors[k] * LEAST_SINGULAR_VALUE <= 1.0,
-            at_bound: at[k] <= 0.0 || at[k] >= 1.0,
+            at_bound: best.at[k] <= 0.0 || best.at[k] >= 1.0,
         };
         let parameters: Vec<Estimate> = (0..).zip(sought).map(|(k, s)| estimate(k, s)).collect();
         let pairs = |value: &dyn Fn(usize, usize) -> f64| -> Vec<Vec<f64>> {
             let row = |i| (0..sought.len()).map(|k| value(i, k)).collect();
             (0..sought.len()).map(row).collect()
         };
-        let covariance = |i: usize, k: usize| {
-            statistics.covariance[i][k] * width(&sought[i]) * width(&sought[k])
-        };
+        let covariance =
+            |i: usize, k: usize| statistics.covariance[i][k] * stretches[i] * stretches[k];
         let points = search.measured();
         let compared = |(point, residual): (&MeasuredPoint, &f64)| Compared {
             stroke_mm: point.stroke,
@@ -210,7 +200,7 @@ impl Identification {
             uncertainty_N: point.uncertainty,
             computed_N: point.force + residual * point.uncertainty,
         };
-        let distance = way_left(at, best);
+        let distance = best.way_left();
         let degrees_of_freedom = points.len() - sought.len();
         Self {
             measured_curve: path.to_owned(),
@@ -236,16 +226,6 @@ impl Identification {
             curve: points.iter().zip(&best.residual).map(compared).collect(),
         }
     }
-}
-
-/// How far the least sum of squares is, in standard errors, by the parameters that no bound holds.
-fn way_left(at: &[f64], best: &Fit) -> f64 {
-    let gradient = best.gradient();
-    let held = |k: usize| at[k] <= 0.0 && gradient[k] > 0.0 || at[k] >= 1.0 && gradient[k] < 0.0;
-    let free: Vec<usize> = (0..at.len()).filter(|&k| !held(k)).collect();
-    let columns: Vec<Vec<f64>> = free.iter().map(|&k| best.columns[k].clone()).collect();
-    let gradient: Vec<f64> = free.iter().map(|&k| gradient[k]).collect();
-    Statistics::of(&columns).distance(&gradient, 1.0 / LEAST_SINGULAR_VALUE)
 }
 
 fn verdicts(
@@ -274,12 +254,11 @@ fn verdicts(
         ),
     ];
     rows.extend(parameters.iter().map(|one| {
-        let limit = (one.upper - one.lower) / LEAST_SINGULAR_VALUE;
         let quantity = format!("standard error of {}", one.name);
         at_most(
             quantity,
             one.standard_error,
-            limit,
+            one.longest_error,
             one.unit,
             "a quarter of its bounds",
         )

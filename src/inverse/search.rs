@@ -1,6 +1,7 @@
 //! The weighted residuals of a measured curve and their derivatives, each from whole runs.
 
 use super::InverseError;
+use super::Statistics;
 use super::runs::{Ran, Runs};
 use super::statistics::dot;
 use crate::case::{MeasuredPoint, Sought};
@@ -15,17 +16,23 @@ const DIFFERENCE: f64 = 1e-3;
 /// Digits of a value that is tried; what lies beyond comes from scaling forth and back.
 const DIGITS: usize = 12;
 
+/// A parameter counts as identified from this ratio of the width of its bounds to its standard error on, and a direction
+/// from this singular value on: bounds alone, every value between them equally likely, are worth √12 = 3.5.
+pub(super) const LEAST_SINGULAR_VALUE: f64 = 4.0;
+
 /// A point of the search, in the unit box of the bounds.
 #[derive(Clone)]
 pub(super) struct Tried {
-    pub at: Vec<f64>,
+    at: Vec<f64>,
     /// None where the run was not solved to its end.
-    pub fit: Option<Fit>,
+    fit: Option<Fit>,
 }
 
 /// How a run meets the measured curve.
 #[derive(Clone)]
 pub(super) struct Fit {
+    /// Where it is in the unit box.
+    pub at: Vec<f64>,
     pub values: Vec<f64>,
     pub folder: String,
     pub records: Vec<StepRecord>,
@@ -45,6 +52,17 @@ impl Fit {
     pub fn entries(&self) -> Vec<f64> {
         let row = |row: usize| self.columns.iter().map(move |column| column[row]);
         (0..self.residual.len()).flat_map(row).collect()
+    }
+
+    /// How far the least sum of squares is, in standard errors, by the parameters that no bound holds.
+    pub fn way_left(&self) -> f64 {
+        let (at, gradient) = (&self.at, self.gradient());
+        let held =
+            |k: usize| at[k] <= 0.0 && gradient[k] > 0.0 || at[k] >= 1.0 && gradient[k] < 0.0;
+        let free: Vec<usize> = (0..at.len()).filter(|&k| !held(k)).collect();
+        let columns: Vec<Vec<f64>> = free.iter().map(|&k| self.columns[k].clone()).collect();
+        let gradient: Vec<f64> = free.iter().map(|&k| gradient[k]).collect();
+        Statistics::of(&columns).distance(&gradient, 1.0 / LEAST_SINGULAR_VALUE)
     }
 
     /// Gradient of half of it by the scaled parameters.
@@ -76,18 +94,20 @@ impl Search {
 
     /// The start in the unit box.
     pub fn start(&self) -> Vec<f64> {
-        let scaled = |(sought, value): (&Sought, f64)| (value - sought.lower) / width(sought);
+        let scaled = |(sought, value): (&Sought, f64)| to_unit(sought, value);
         let parameters = self.runs.parameters().iter();
         parameters.zip(self.runs.start()).map(scaled).collect()
     }
 
     /// The point tried with the least sum of squares.
-    pub fn best(&self) -> Option<(&[f64], &Fit)> {
-        let fits = self
-            .tried
-            .iter()
-            .filter_map(|t| Some((&t.at[..], t.fit.as_ref()?)));
-        fits.min_by(|one, other| one.1.chi_squared().total_cmp(&other.1.chi_squared()))
+    pub fn best(&self) -> Option<&Fit> {
+        let fits = self.tried.iter().filter_map(|tried| tried.fit.as_ref());
+        fits.min_by(|one, other| one.chi_squared().total_cmp(&other.chi_squared()))
+    }
+
+    /// The last point tried.
+    pub fn last(&self) -> Option<&Fit> {
+        self.tried.last()?.fit.as_ref()
     }
 
     /// The first point tried.
@@ -131,7 +151,7 @@ impl Search {
         let forces = self.forces(&ran);
         let mut columns = Vec::new();
         for parameter in 0..at.len() {
-            let column = match self.derivative(&ran, parameter) {
+            let column = match self.derivative(&ran, parameter, values[parameter]) {
                 Some(column) => Some(column),
                 None => self.difference(at, parameter, &forces)?,
             };
@@ -145,6 +165,7 @@ impl Search {
             .zip(&self.measured)
             .map(|(force, m)| (force - m.force) / m.uncertainty);
         Ok(Some(Fit {
+            at: at.to_vec(),
             residual: weighted.collect(),
             values,
             columns,
@@ -154,11 +175,11 @@ impl Search {
     }
 
     /// Weighted derivative of the forces by a scaled parameter, if the run has it. Collective.
-    fn derivative(&self, ran: &Ran, parameter: usize) -> Option<Vec<f64>> {
+    fn derivative(&self, ran: &Ran, parameter: usize, value: f64) -> Option<Vec<f64>> {
         let sought = &self.runs.parameters()[parameter];
         let at = |m: &MeasuredPoint| {
             let slope = slopes_at(ran, sought.name, m.stroke)?.force;
-            Some(slope * width(sought) / m.uncertainty)
+            Some(slope * stretch(sought, value) / m.uncertainty)
         };
         let mut column: Vec<f64> = self.measured.iter().map(at).collect::<Option<_>>()?;
         from_first(self.runs.comm(), &mut column);
@@ -200,7 +221,7 @@ impl Search {
     /// The values of the parameters at a point of the unit box.
     fn values(&self, at: &[f64]) -> Vec<f64> {
         let value = |(sought, at): (&Sought, &f64)| {
-            let value = rounded(sought.lower + at * width(sought), DIGITS);
+            let value = rounded(from_unit(sought, *at), DIGITS);
             value.clamp(sought.lower, sought.upper)
         };
         self.runs.parameters().iter().zip(at).map(value).collect()
@@ -221,6 +242,39 @@ impl Search {
 /// Width of the bounds of a parameter.
 pub(super) fn width(sought: &Sought) -> f64 {
     sought.upper - sought.lower
+}
+
+/// Whether a parameter is scaled by its logarithm: bounds on one side of zero say that it is a matter of size, and the
+/// constants of a power law have straight valleys then.
+fn is_logarithmic(sought: &Sought) -> bool {
+    sought.lower > 0.0
+}
+
+/// The place of a value in the unit interval of its bounds.
+fn to_unit(sought: &Sought, value: f64) -> f64 {
+    if is_logarithmic(sought) {
+        (value / sought.lower).ln() / (sought.upper / sought.lower).ln()
+    } else {
+        (value - sought.lower) / width(sought)
+    }
+}
+
+/// The value at a place in the unit interval.
+fn from_unit(sought: &Sought, at: f64) -> f64 {
+    if is_logarithmic(sought) {
+        sought.lower * (sought.upper / sought.lower).powf(at)
+    } else {
+        sought.lower + at * width(sought)
+    }
+}
+
+/// The derivative of a value by its place.
+pub(super) fn stretch(sought: &Sought, value: f64) -> f64 {
+    if is_logarithmic(sought) {
+        value * (sought.upper / sought.lower).ln()
+    } else {
+        width(sought)
+    }
 }
 
 /// The force where a step of the way down has ended at this stroke (mm); steps are made to end there.
