@@ -2,7 +2,7 @@
 """Makes the tables of docs/identification.md: identification from curves whose answer is known, and designs.
 
   scripts/identification.py curve FILE NOISE SEED [OPTION ...]   a curve of this program with noise, as a measured file
-  scripts/identification.py twin SEEDS [OPTION ...]              hidden friction, K and n, found again from each seed
+  scripts/identification.py twin SEEDS NAME,NAME [OPTION ...]    hidden values, found again from each seed
   scripts/identification.py code_aster FILE                      the curve of code_aster as a measured file
 
 The program is target/release/ssnp155, or $SSNP155. Results stay in results-identification/.
@@ -18,7 +18,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAM = os.environ.get("SSNP155", str(ROOT / "target/release/ssnp155"))
 RESULTS = ROOT / "results-identification"
-STROKES = [0.25 * i for i in range(1, 109)]  # mm, every quarter of a millimetre down to 27
+STROKES = [0.2 * i for i in range(1, 101)]  # mm, every 0.2 mm down to 20
 TRUE = {"friction_coefficient": 0.1342, "hollomon_k": 550.4, "hollomon_n": 0.223}
 BOUNDS = {"friction_coefficient": (0, 0.5), "hollomon_k": (200, 1000), "hollomon_n": (0.05, 0.5)}
 # Every start is 30 % off, none on the same side as all others.
@@ -40,7 +40,7 @@ def words(values):
 def curve(file, noise, seed, options):
     """Writes forces of this program with normal noise, `noise` being a share of each force."""
     folder = RESULTS / "curve"
-    strokes = ",".join(f"{stroke:g}" for stroke in STROKES)
+    strokes = ",".join(f"{stroke:.6g}" for stroke in STROKES)
     last = STROKES[-1]
     code, text = run(folder, [*options, "-report_strokes", strokes, "-stroke", f"{last}", "-unload_fraction", "0",
                               "-time_load", f"{900 * last / 28.5!r}", "-output_every", "0"])
@@ -53,7 +53,7 @@ def curve(file, noise, seed, options):
         table.write("stroke_mm,force_N,uncertainty_N\n")
         for stroke in STROKES:
             exact = force[round(stroke, 6)]
-            table.write(f"{stroke:g},{exact * (1 + noise * chance.gauss(0, 1)):.6f},{noise * exact:.6f}\n")
+            table.write(f"{stroke:.6g},{exact * (1 + noise * chance.gauss(0, 1)):.6f},{noise * exact:.6f}\n")
 
 
 def identify(folder, file, parameters, start, options):
@@ -66,22 +66,26 @@ def identify(folder, file, parameters, start, options):
         sys.exit(text)
 
 
-def twin(seeds, options):
+def twin(seeds, names, options):
+    """The bounds of Cramer and Rao are the standard errors at the hidden values, from one run there."""
     options = [*TWIN, *options]
-    start = {name: value * START[name] for name, value in TRUE.items()}
-    print("| seed | runs | misfit² | " + " | ".join(f"{name} (in standard errors off)" for name in TRUE) + " | code |")
-    print("|---" * (len(TRUE) + 4) + "|")
+    parameters = {name: BOUNDS[name] for name in names}
+    start = {name: value * START[name] if name in names else value for name, value in TRUE.items()}
+    heads = " | ".join(f"{name} (off, in bounds of Cramer and Rao)" for name in names)
+    print(f"| seed | runs | misfit² | way left | {heads} | code |")
+    print("|---" * (len(names) + 5) + "|")
     for seed in range(1, seeds + 1):
         RESULTS.mkdir(exist_ok=True)
         file = RESULTS / f"twin-{seed}.csv"
         curve(file, 0.01, seed, [*options, *words(TRUE)])
-        code, found = identify(RESULTS / f"twin-{seed}", file, BOUNDS, start, options)
+        _, exact = identify(RESULTS / "truth", file, parameters, TRUE, [*options, "-most_runs", "1"])
+        code, found = identify(RESULTS / f"twin-{seed}", file, parameters, start, options)
         cells = []
-        for one in found["parameters"]:
-            off = (one["estimate"] - TRUE[one["name"]]) / one["standard_error"]
+        for one, best in zip(found["parameters"], exact["parameters"]):
+            off = (one["estimate"] - TRUE[one["name"]]) / best["standard_error"]
             cells.append(f"{one['estimate']:.5g} ± {one['standard_error']:.2g} ({off:+.2f})")
         misfit = found["chi_squared"] / found["degrees_of_freedom"]
-        print(f"| {seed} | {found['runs']} | {misfit:.2f} | " + " | ".join(cells) + f" | {code} |", flush=True)
+        print(f"| {seed} | {found['runs']} | {misfit:.2f} | {found['distance']:.2f} | " + " | ".join(cells) + f" | {code} |", flush=True)
 
 
 def code_aster(file):
@@ -109,8 +113,8 @@ if __name__ == "__main__":
     match sys.argv[1:]:
         case ["curve", file, noise, seed, *options]:
             curve(file, float(noise), int(seed), options)
-        case ["twin", seeds, *options]:
-            twin(int(seeds), options)
+        case ["twin", seeds, names, *options]:
+            twin(int(seeds), names.split(","), options)
         case ["code_aster", file]:
             code_aster(file)
         case _:
