@@ -135,6 +135,7 @@ fn what_is_shown_reads_back_as_the_same_case() {
         ("density", "2.8e-3"),
         ("hardening", "table"),
         ("hardening_file", "inputs/reference/hardening.csv"),
+        ("table_factor", "1.25"),
         ("sheet_nx", "171"),
         ("sheet_ny", "6"),
         ("quadrature", "3"),
@@ -162,6 +163,7 @@ fn what_is_shown_reads_back_as_the_same_case() {
         ("restart", "results/checkpoint-000123"),
         ("overwrite", "true"),
         ("dry_run", "true"),
+        ("sensitivity", "friction_coefficient,table_factor"),
     ];
     let case = read(&given).unwrap();
     let shown: BTreeMap<String, String> = case

@@ -281,6 +281,7 @@ mod tests {
             }),
             angles_deg: BTreeMap::new(),
             angle_fit_residuals_mm: BTreeMap::new(),
+            sensitivity: None,
             counts: Counts {
                 steps: 11,
                 refused_solves: 6,

@@ -58,13 +58,13 @@ pub enum RestartError {
     },
     /// The checkpoint has not the derivatives that are asked for.
     #[error(
-        "-restart: the checkpoint {} holds derivatives by these parameters: {found}; use -sensitivity {found}, or run without \
-         -restart", path.display()
+        "-restart: the checkpoint {} carries {}; use -sensitivity {found}, or run without -restart", path.display(),
+        if found == "none" { "no derivatives".to_owned() } else { format!("derivatives by {found}") }
     )]
     OtherParameters {
         /// The checkpoint.
         path: PathBuf,
-        /// Its parameters.
+        /// Its parameters as -sensitivity takes them.
         found: String,
     },
 }

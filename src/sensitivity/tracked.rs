@@ -50,8 +50,7 @@ impl Tracked {
     /// At the start of a run: the sheet is at rest whatever the parameter is.
     pub fn start(system: &System, beside: Beside) -> petsc::Result<Self> {
         let parameter = beside.parameter;
-        let half_width = parameter.value * crate::system::SHARE;
-        let variation = system.variation(beside.problems, half_width);
+        let variation = system.variation(beside.problems, beside.half_width);
         Ok(Self {
             parameter,
             history: variation.virgin_slope(),

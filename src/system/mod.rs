@@ -57,7 +57,7 @@ pub use snapshot::Snapshot;
 pub use subdomain::Subdomain;
 pub use subdomain_size::SubdomainSize;
 pub use tangent::JacobianEntries;
-pub use variation::{Directions, LocalStep, SHARE, Variation, Workspace};
+pub use variation::{Directions, LocalStep, Variation, Workspace};
 pub use work::{AcceptedState, Work};
 
 use crate::contact::ContactState;

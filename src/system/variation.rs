@@ -2,8 +2,8 @@
 //!
 //! Two problems beside the one that is solved, with the parameter a little above and below its value, are evaluated at
 //! the same unknowns from histories and accelerations moved along their own derivatives: the difference by the width is
-//! the derivative. All of it is explicit, so no tolerance of a solver enters; what is left is rounding divided by
-//! [`SHARE`], and the square of [`SHARE`].
+//! the derivative. All of it is explicit, so no tolerance of a solver enters; what is left is rounding divided by the
+//! share of the parameter by which the problems differ, and the square of that share.
 
 use mpi::traits::Communicator;
 use petsc::{Vector, VectorRef};
@@ -17,9 +17,6 @@ use super::shape_slope::ShapeSlopes;
 use super::subdomain::Subdomain;
 use crate::element::ElementForce;
 use crate::mesh::SurfaceSide;
-
-/// The share of its value by which the parameter differs on each side; docs/sensitivity.md measures others.
-pub const SHARE: f64 = 1e-6;
 
 /// Multipliers up to this size are rounding (mm), and gaps up to this size are closed (mm; PETSc's limit).
 const NO_FORCE: f64 = 1e-13;

@@ -449,6 +449,48 @@ pub const MISTAKES: &[Mistake] = &[
         sentence: "option -output_dir has no value: specify a path (default results)",
     },
     words(
+        "derivative by what is no parameter",
+        BOTH,
+        "-sensitivity friction_coefficient,stroke",
+        "option -sensitivity friction_coefficient,stroke: this is not a list of parameters with a derivative; specify names of options with commas between and no spaces: punch_radius, die_radius, die_shoulder_radius, sheet_thickness, young_modulus, friction_coefficient, contact_compliance, constants of the hardening law in use (table_factor, hollomon_k, hollomon_n, hollomon_elastic_limit, swift_k, swift_eps0, swift_n, voce_sigma0, voce_q, voce_b, linear_sigma0, linear_h), or none (default none)",
+    ),
+    words(
+        "derivative without friction",
+        ONE,
+        "-sensitivity friction_coefficient",
+        "option -sensitivity friction_coefficient: the derivative at 0 would be one-sided, and -friction_coefficient is 0; leave it out, or use a value above 0",
+    ),
+    words(
+        "derivative by a constant of another law",
+        ONE,
+        "-sensitivity hollomon_k",
+        "option -sensitivity hollomon_k: it is no constant of the law in use, -hardening table; leave it out, or choose its law",
+    ),
+    words(
+        "derivative twice",
+        ONE,
+        "-sensitivity punch_radius,punch_radius",
+        "option -sensitivity punch_radius,punch_radius: a parameter is there twice; specify names of options with commas between and no spaces: punch_radius, die_radius, die_shoulder_radius, sheet_thickness, young_modulus, friction_coefficient, contact_compliance, constants of the hardening law in use (table_factor, hollomon_k, hollomon_n, hollomon_elastic_limit, swift_k, swift_eps0, swift_n, voce_sigma0, voce_q, voce_b, linear_sigma0, linear_h), or none (default none)",
+    ),
+    words(
+        "derivative at the end of the range",
+        ONE,
+        "-sensitivity friction_coefficient -friction_coefficient 10",
+        "option -sensitivity friction_coefficient: values on both sides of it are needed, and beside it option -friction_coefficient 10.001: the value is out of range; specify a real number: 0 <= value <= 10 (default 0)",
+    ),
+    words(
+        "derivatives with the linear systems left to PETSc",
+        BOTH,
+        "-sensitivity punch_radius -pc_type lu",
+        "option -sensitivity punch_radius: the linear systems are left to PETSc, and derivatives need the program's own solve; leave out -sensitivity, or -pc_type and -snes_type",
+    ),
+    words(
+        "factor on a table with another law",
+        ONE,
+        "-hardening voce -table_factor 1.1",
+        "option -table_factor 1.1 has no effect with -hardening voce: it belongs to -hardening table; leave it out, or choose the other law",
+    ),
+    words(
         "hardening table not there",
         BOTH,
         "-hardening_file nowhere.csv",
