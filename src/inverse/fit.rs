@@ -83,7 +83,8 @@ pub(super) fn fit(search: &Rc<RefCell<Search>>, near: f64) -> Result<Ended, Inve
         if fit.way_left() <= near {
             return Err(InverseError::Near.into());
         }
-        Ok(r.write()?.copy_from_slice(&fit.residual))
+        r.write()?.copy_from_slice(&fit.residual);
+        Ok(())
     })?;
     let (m, n) = (rows as i32, columns as i32);
     let at_row: Vec<i32> = (0..m).flat_map(|row| (0..n).map(move |_| row)).collect();

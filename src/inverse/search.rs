@@ -150,8 +150,8 @@ impl Search {
         };
         let forces = self.forces(&ran);
         let mut columns = Vec::new();
-        for parameter in 0..at.len() {
-            let column = match self.derivative(&ran, parameter, values[parameter]) {
+        for (parameter, value) in values.iter().enumerate() {
+            let column = match self.derivative(&ran, parameter, *value) {
                 Some(column) => Some(column),
                 None => self.difference(at, parameter, &forces)?,
             };
