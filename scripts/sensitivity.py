@@ -6,7 +6,7 @@
 runs the case of OPTIONS once with -sensitivity and twice per parameter and share with the parameter above and below its
 value, all with the same steps (choose them with -fixed_steps_load and -fixed_steps_unload), and prints a table: per
 parameter and quantity the largest difference in a row as a share of the column's largest derivative, for the share that
-agrees best, and the stroke where it is. Rows beyond --until (mm, on the way down) are listed apart. Further lines are the
+agrees best, and the stroke where it is. Rows beyond --until (mm, going down) are listed apart. Further lines are the
 derivatives of the released angles. A share whose runs have other steps, because another solve was refused, is left out.
 """
 

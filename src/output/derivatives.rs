@@ -25,7 +25,7 @@ pub struct DerivativeRow {
     pub dy_A_sheet_mm: f64,
     /// Gauss points and contact points that did something else than in the step before.
     pub changed_points: u32,
-    /// Gauss points that flow at the parameter a little above its value and not a little below, or the other way round:
+    /// Gauss points that flow at the parameter a little above its value and not a little below, or the reverse:
     /// the most over the parameters.
     pub doubtful_points: u32,
     /// Derivatives in the order of the parameters.
@@ -212,7 +212,7 @@ impl DerivativeFile {
     }
 }
 
-/// Reads the rows of a table of so many parameters back.
+/// Reads the rows of a table with this number of parameters back.
 ///
 /// # Errors
 /// [`OutputError::Read`] where it is none.

@@ -53,7 +53,7 @@ pub struct Cost {
 /// derivative that moves the sheet by millimetres, and few points yield on one side only.
 const SHARE: f64 = 1e-6;
 /// Of parameters that move the sheet by micrometres, and in which the equations of contact are linear.
-const LINEAR: [(&str, f64); 2] = [("contact_compliance", 1e-3), ("friction_coefficient", 1e-4)];
+const LINEAR: [(&str, f64); 2] = [("contact_compliance", 1e-4), ("friction_coefficient", 1e-4)];
 
 /// A parameter and the problems beside the one of the case.
 pub struct Beside {

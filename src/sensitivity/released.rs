@@ -35,7 +35,7 @@ pub struct ReleasedState<'a> {
 }
 
 impl Sensitivity {
-    /// Derivatives of the angle of a sheet that was released from the last accepted state. If it yielded on the way there
+    /// Derivatives of the angle of a sheet that was released from the last accepted state. If it yielded until it was at rest there
     /// are none: they would depend on the steps. Collective.
     ///
     /// # Errors

@@ -23,7 +23,7 @@ const COLORS: [RGBColor; 8] = [
     RGBColor(75, 85, 99),
 ];
 
-/// The figure as SVG. The path down is drawn thick, the way back thin; values beyond the largest force lie on the frame.
+/// The figure as SVG. The path down is drawn thick, the path back thin; values beyond the largest force lie on the frame.
 ///
 /// # Errors
 /// A sentence, if the drawing fails.

@@ -76,7 +76,7 @@ fn notes(outcome: &Outcome) -> Vec<String> {
     };
     for slopes in outcome.sensitivity.released.iter().filter(missing) {
         notes.push(format!(
-            "the sheet released at t = {} ms has no derivatives: it yielded on the way to rest, or those before were lost",
+            "the sheet released at t = {} ms has no derivatives: it yielded before it came to rest, or those before were lost",
             slopes.t_ms
         ));
     }
