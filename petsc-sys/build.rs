@@ -69,6 +69,9 @@ const FUNCTIONS: &[&str] = &[
     "TS(SetErrorIfStepFails|SetExactFinalTime|GetExactFinalTime|GetConvergedReason|SetConvergedReason|GetPrevTime)",
     "TS(GetSolution|2GetSolution|2SetSolution|Alpha2SetRadius|Alpha2SetParams|Alpha2GetParams)",
     "TSAdaptSetScaleSolveFailed",
+    // Optimisation.
+    "Tao(Create|Destroy|SetType|SetFromOptions|SetSolution|SetVariableBounds|SetTolerances|Solve)",
+    "Tao(SetResidualRoutine|SetJacobianResidualRoutine|GetConvergedReason|GetIterationNumber)",
 ];
 
 /// PETSc's globals and constants the bindings hold.
@@ -78,6 +81,7 @@ const VARIABLES: &[&str] = &[
     "PetscTrFree",
     "MAT(AIJ|SOLVERMUMPS|SOLVERPETSC|ORDERINGND)|VECSTANDARD|PCSHELL|SNESLINESEARCHSHELL",
     "TS(ALPHA2|BEULER)",
+    "TAOBRGN",
 ];
 
 /// Types used by no listed function's signature.

@@ -7,6 +7,7 @@
 pub mod case;
 pub mod contact;
 pub mod element;
+pub mod inverse;
 pub mod material;
 pub mod mesh;
 pub mod output;

@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
+use std::rc::Rc;
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
@@ -12,6 +13,7 @@ use ssnp155::case::{
     Case, CaseError, ENVIRONMENT, OptionSource, arguments_as_text, check_arguments,
     check_environment, check_ranks, help_text,
 };
+use ssnp155::inverse;
 use ssnp155::ranks::lowest_failing;
 use ssnp155::run::{Ending, conclude, simulate};
 
@@ -48,12 +50,15 @@ fn program(world: &SimpleCommunicator) -> Result<Ending, Refused> {
     let args = agree(world, arguments_as_text(std::env::args_os()))?;
     agree(world, check_environment(std::env::var_os(ENVIRONMENT)))?;
     agree(world, check_arguments(args.get(1..).unwrap_or_default()))?;
-    let session = agree(world, open_session(&args))?;
+    let session = Rc::new(agree(world, open_session(&args))?);
     let case = agree(world, Case::read(&PetscOptions))?;
     agree(
         world,
         check_ranks(world.size().unsigned_abs() as usize, &case),
     )?;
+    if case.inverse.is_asked() {
+        return agree(world, inverse::solve(&case, &session, world));
+    }
     let outcome = agree(world, simulate(&case, world))?;
     match outcome {
         Some(outcome) => agree(world, conclude(&case, outcome, &session, world)),

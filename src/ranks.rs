@@ -62,3 +62,26 @@ pub fn smallest(comm: &impl Communicator, mine: f64) -> f64 {
     comm.all_reduce_into(&mine, &mut all, SystemOperation::min());
     all
 }
+
+/// The value if every rank has one; otherwise, on every rank, the sentence of the lowest rank that failed. Collective.
+///
+/// # Errors
+/// That sentence.
+pub fn agree_in_words<T, E: std::fmt::Display>(
+    comm: &impl Communicator,
+    mine: Result<T, E>,
+) -> Result<T, String> {
+    let Some(lowest) = lowest_failing(comm, mine.is_err()) else {
+        return mine.map_err(|error| error.to_string());
+    };
+    let sentence = mine
+        .err()
+        .map_or_else(String::new, |error| error.to_string());
+    let sentence = broadcast_bytes(comm, lowest, sentence.into_bytes());
+    Err(String::from_utf8_lossy(&sentence).into_owned())
+}
+
+/// Gives every rank the numbers of rank 0, to the last bit. Collective.
+pub fn from_first(comm: &impl Communicator, numbers: &mut [f64]) {
+    comm.process_at_rank(0).broadcast_into(numbers);
+}

@@ -3,6 +3,7 @@
 #include <petscconf.h>
 #include <petscksp.h>
 #include <petscsnes.h>
+#include <petsctao.h>
 #include <petscts.h>
 
 /* A macro before 3.19, a member of an enumeration since. */

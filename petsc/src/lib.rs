@@ -1,15 +1,15 @@
 //! A safe wrapper of the parts of PETSc (3.18 to 3.26) that a contact solver needs.
 //!
-//! In: communicators of rsmpi, plain slices, closures. Out: vectors, matrices, linear, nonlinear and
-//! time-step solvers whose failures are [`Error`]s in Rust. Never: `unsafe` for the user, printing,
+//! In: communicators of rsmpi, plain slices, closures. Out: vectors, matrices, linear, nonlinear,
+//! time-step and least-squares solvers whose failures are [`Error`]s in Rust. Never: `unsafe` for the user, printing,
 //! or an opinion about mechanics.
 //!
 //! The PETSc is chosen when this crate is built: `PETSC_DIR` and `PETSC_ARCH`, or pkg-config, see the README.
 //!
 //! # Examples
-//! Three complete programs, which take PETSc's options and run on any number of ranks:
-//! `cargo run -p petsc --example obstacle` (bounds on the unknowns), `oscillator` (TSALPHA2) and `shell_matrix`
-//! (a matrix that is a closure). The shortest one starts MPI and PETSc, and adds two vectors:
+//! Four complete programs, which take PETSc's options and run on any number of ranks:
+//! `cargo run -p petsc --example obstacle` (bounds on the unknowns), `oscillator` (TSALPHA2), `shell_matrix`
+//! (a matrix that is a closure) and `curve_fit` (least squares within bounds). The shortest one starts MPI and PETSc, and adds two vectors:
 //!
 //! ```
 //! use mpi::Threading;
@@ -30,8 +30,8 @@
 //! ```
 //!
 //! # Owned and borrowed objects
-//! [`Vector`], [`Matrix`], [`Ksp`], [`Snes`] and [`Ts`] own a PETSc object and dereference to
-//! [`VectorRef`], [`MatrixRef`], [`KspRef`], [`SnesRef`] and [`TsRef`], which is also what callbacks
+//! [`Vector`], [`Matrix`], [`Ksp`], [`Snes`], [`Ts`] and [`Tao`] own a PETSc object and dereference to
+//! [`VectorRef`], [`MatrixRef`], [`KspRef`], [`SnesRef`], [`TsRef`] and [`TaoRef`], which is also what callbacks
 //! are given. Every owned object keeps the [`Session`] alive, so the order of drops does not matter
 //! as long as all of them happen before MPI ends.
 //!
@@ -64,6 +64,7 @@ mod session;
 mod shell;
 mod shell_matrix;
 mod snes;
+mod tao;
 mod ts;
 mod vector;
 
@@ -75,10 +76,11 @@ pub use factorization::{FactorKind, FactorStatus, Factorization};
 pub use guard::{ReadGuard, WriteGuard};
 pub use ksp::{Ksp, KspRef};
 pub use matrix::{Matrix, MatrixOption, MatrixRef};
-pub use reason::{KspReason, SnesReason, TsReason};
+pub use reason::{KspReason, SnesReason, TaoReason, TsReason};
 pub use scatter::Scatter;
 pub use session::{BUILT_WITH, Session, has_external_package};
 pub use snes::{ConvergenceCheck, LineSearchInfo, Snes, SnesRef};
+pub use tao::{Tao, TaoRef};
 pub use ts::{Alpha2State, AlphaParameters, ExactFinalTime, Ts, TsRef};
 pub use vector::{Vector, VectorRef};
 

@@ -55,14 +55,28 @@ impl Matrix {
         rows: &[i32],
         cols: &[i32],
     ) -> Result<Self> {
+        Self::rectangular_from_coo(comm, [local_rows, local_rows], rows, cols)
+    }
+
+    /// As [`Matrix::from_coo`], with `[rows, columns]` of this rank. Collective.
+    ///
+    /// # Errors
+    /// As [`Matrix::from_coo`].
+    pub fn rectangular_from_coo<C: Communicator>(
+        comm: &C,
+        local: [usize; 2],
+        rows: &[i32],
+        cols: &[i32],
+    ) -> Result<Self> {
         let keep = keep()?;
-        let n = index(local_rows)?;
+        let [m, n] = [index(local[0])?, index(local[1])?];
         // PETSc checks neither the columns nor that all ranks succeed.
-        let size = sum(comm.as_raw(), n)?;
-        let fits = rows.len() == cols.len() && rows.iter().chain(cols).all(|&i| i < size);
+        let [height, width] = [sum(comm.as_raw(), m)?, sum(comm.as_raw(), n)?];
+        let within = |indices: &[i32], size| indices.iter().all(|&i| i < size);
+        let fits = rows.len() == cols.len() && within(rows, height) && within(cols, width);
         if largest(comm.as_raw(), i32::from(!fits))? > 0 {
             return Err(Error::usage(format!(
-                "as many row as column indices are needed, all below {size}, on every rank"
+                "as many row as column indices are needed, all below {height} and {width}, on every rank"
             )));
         }
         let mut raw = ptr::null_mut();
@@ -78,7 +92,7 @@ impl Matrix {
         // SAFETY: a live matrix; both arrays have `count` entries and are not kept by PETSc.
         unsafe {
             let whole = sys::PETSC_DETERMINE;
-            check(sys::MatSetSizes(raw, n, n, whole, whole))?;
+            check(sys::MatSetSizes(raw, m, n, whole, whole))?;
             check(sys::MatSetType(raw, sys::MATAIJ.as_ptr()))?;
             check(sys::MatSetPreallocationCOO(
                 raw,

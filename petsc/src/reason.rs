@@ -150,3 +150,22 @@ reasons! {
     DivergedPreconditioner = KSP_DIVERGED_PC_FAILED,
         "the matrix could not be factorised, or the preconditioner not be built";
 }
+
+reasons! {
+    /// Why the optimisation stopped.
+    TaoReason(TaoConvergedReason);
+    Iterating = TAO_CONTINUE_ITERATING, "the optimisation is still at work";
+    ConvergedAbsolute = TAO_CONVERGED_GATOL, "the gradient is below the absolute tolerance";
+    ConvergedRelative = TAO_CONVERGED_GRTOL, "the gradient is small compared with the objective";
+    ConvergedReduction = TAO_CONVERGED_GTTOL, "the gradient has fallen by the relative tolerance";
+    ConvergedStep = TAO_CONVERGED_STEPTOL, "the step is below its tolerance";
+    ConvergedMinimum = TAO_CONVERGED_MINF, "the objective is below its least wanted value";
+    ConvergedUser = TAO_CONVERGED_USER, "the program was content with the point";
+    DivergedIterations = TAO_DIVERGED_MAXITS, "the allowed number of iterations is used up";
+    DivergedNan = TAO_DIVERGED_NAN, "a number in the optimisation is not finite";
+    DivergedFunctionCount = TAO_DIVERGED_MAXFCN,
+        "the allowed number of evaluations is used up";
+    DivergedLineSearch = TAO_DIVERGED_LS_FAILURE, "the line search found no better point";
+    DivergedTrustRegion = TAO_DIVERGED_TR_REDUCTION, "the trust region has become too small";
+    DivergedUser = TAO_DIVERGED_USER, "the program asked the optimisation to stop";
+}

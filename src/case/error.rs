@@ -236,6 +236,24 @@ pub enum CaseError {
         /// Elements through the thickness.
         ny: usize,
     },
+    /// What is looked for does not fit the case.
+    #[error("option -{option}: {problem}")]
+    Inverse {
+        /// Name without the dash.
+        option: &'static str,
+        /// What is wrong, and what to do.
+        problem: String,
+    },
+    /// A measured curve is refused.
+    #[error("measured curve {path}{}: {problem}", line.map(|line| format!(", line {line}")).unwrap_or_default())]
+    Measured {
+        /// The path as given.
+        path: String,
+        /// Line of the file from 1, if one is to blame.
+        line: Option<u64>,
+        /// What is wrong, and what is expected.
+        problem: String,
+    },
     /// An option of PETSc's that the program has to decide itself.
     #[error(
         "option {}: {reason}{}; leave it out, and {instead}", format!("-{option} {given}").trim_end(),

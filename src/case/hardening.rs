@@ -64,6 +64,9 @@ impl Described for Constant {
     fn meaning(&self) -> &'static str {
         self.meaning
     }
+    fn is_real(&self) -> bool {
+        true
+    }
     fn allowed(&self) -> String {
         self.kind().allowed()
     }

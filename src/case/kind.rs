@@ -25,6 +25,10 @@ pub(crate) trait Kind {
     fn value_may_be_missing(&self) -> bool {
         false
     }
+    /// Whether the values are real numbers.
+    fn is_real(&self) -> bool {
+        false
+    }
 }
 
 /// A finite real number in an interval.
@@ -81,6 +85,10 @@ impl Kind for Real {
             Bound::Unbounded => String::new(),
         };
         format!("{lower}value{upper}")
+    }
+
+    fn is_real(&self) -> bool {
+        true
     }
 }
 

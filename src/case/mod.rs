@@ -9,8 +9,10 @@ mod error;
 mod geometry;
 mod hardening;
 mod help;
+mod inverse;
 mod kind;
 mod kind_resuming;
+mod measured;
 mod model;
 mod option;
 mod option_file;
@@ -29,9 +31,11 @@ pub use arguments::{
 pub use error::{CaseError, Warning};
 pub use geometry::check_ranks;
 pub use help::{help_text, options_markdown};
+pub use inverse::Sought;
+pub use measured::{MeasuredPoint, read_measured};
 pub use model::{
-    Case, Discretisation, Dynamics, Friction, Loading, Material, Output, Restart, Resuming, Sheet,
-    Stepping, Tools,
+    Case, Discretisation, Dynamics, Friction, Inverse, Loading, Material, Output, Restart,
+    Resuming, Sheet, Stepping, Tools,
 };
 pub use option::OptionSource;
 pub use provenance::Difference;

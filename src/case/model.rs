@@ -1,5 +1,6 @@
 //! The case: the model a person describes, as plain numbers. Units are mm, N, MPa, g and ms.
 
+use super::inverse::Sought;
 use crate::contact::ContactLocation;
 use crate::element::Quadrature;
 use crate::material::Hardening;
@@ -27,6 +28,8 @@ pub struct Case {
     pub output: Output,
     /// When to stop, and from where to go on.
     pub resuming: Resuming,
+    /// What is looked for by several runs.
+    pub inverse: Inverse,
 }
 
 impl Case {
@@ -212,6 +215,8 @@ pub struct Output {
     pub iterations: bool,
     /// Whether the model is only shown.
     pub dry_run: bool,
+    /// Whether the screen stays silent: one of several runs of a search.
+    pub quiet: bool,
     /// Options by whose values the run is differentiated.
     pub sensitivity: Vec<&'static str>,
 }
@@ -240,4 +245,21 @@ pub enum Restart {
     Newest,
     /// From the checkpoint with this path.
     From(String),
+}
+
+/// What is looked for by several runs, if anything.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inverse {
+    /// Path of the measured curve that is to be met.
+    pub identify: Option<String>,
+    /// Wanted angle between the arms of the released sheet, degrees.
+    pub design: Option<f64>,
+    /// What may be changed for it.
+    pub parameters: Vec<Sought>,
+    /// Most runs.
+    pub most_runs: usize,
+    /// How far the angle of a design may be from the wanted one, degrees.
+    pub tolerance: f64,
+    /// How much finer the mesh of the run is that confirms a design; 1: no such run.
+    pub refinement: usize,
 }

@@ -35,11 +35,12 @@ pub(crate) enum Group {
     Stepping,
     Output,
     Resuming,
+    Inverse,
 }
 
 impl Group {
     /// All groups in the order in which they are listed.
-    pub(crate) const ALL: [Group; 9] = [
+    pub(crate) const ALL: [Group; 10] = [
         Group::Sheet,
         Group::Tools,
         Group::Loading,
@@ -49,6 +50,7 @@ impl Group {
         Group::Stepping,
         Group::Output,
         Group::Resuming,
+        Group::Inverse,
     ];
 
     /// The heading.
@@ -63,12 +65,16 @@ impl Group {
             Group::Stepping => "Stepping",
             Group::Output => "Output",
             Group::Resuming => "Stop and resume",
+            Group::Inverse => "Identification and design",
         }
     }
 
     /// Whether its options define the physics and the mesh, and not how the solution is reached and saved.
     pub(crate) fn defines_model(self) -> bool {
-        !matches!(self, Group::Stepping | Group::Output | Group::Resuming)
+        !matches!(
+            self,
+            Group::Stepping | Group::Output | Group::Resuming | Group::Inverse
+        )
     }
 }
 
@@ -148,6 +154,8 @@ pub(crate) trait Described: Sync {
     fn default(&self) -> &'static str;
     fn group(&self) -> Group;
     fn meaning(&self) -> &'static str;
+    /// Whether its values are real numbers.
+    fn is_real(&self) -> bool;
     /// The range or the choices.
     fn allowed(&self) -> String;
     /// The value a case has, as text; none if the case has no use for the option.
@@ -177,6 +185,9 @@ impl<K: Kind + Sync> Described for Opt<K> {
     }
     fn meaning(&self) -> &'static str {
         self.meaning
+    }
+    fn is_real(&self) -> bool {
+        self.kind.is_real()
     }
     fn allowed(&self) -> String {
         self.kind.allowed()

@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use super::error::CaseError;
 use super::hardening::{constants, has};
 use super::model::{
-    Case, Discretisation, Friction, Loading, Material, Output, Resuming, Sheet, Stepping, Tools,
+    Case, Discretisation, Friction, Inverse, Loading, Material, Output, Resuming, Sheet, Stepping,
+    Tools,
 };
 use super::option::{self, OptionSource};
-use super::{geometry, table};
+use super::{geometry, inverse, table};
 use crate::material::hardening::{Declaration, Hardening, LAWS};
 use crate::text::shortened;
 
@@ -67,6 +68,7 @@ impl Case {
                 every: table::OUTPUT_EVERY.read(options)?,
                 iterations: table::MONITOR_ITERATIONS.read(options)?,
                 dry_run: table::DRY_RUN.read(options)?,
+                quiet: false,
                 sensitivity: table::SENSITIVITY.read(options)?,
             },
             resuming: Resuming {
@@ -76,10 +78,19 @@ impl Case {
                 restart: table::RESTART.read(options)?,
                 overwrite: table::OVERWRITE.read(options)?,
             },
+            inverse: Inverse {
+                identify: table::IDENTIFY.read(options)?,
+                design: table::DESIGN.read(options)?,
+                parameters: table::PARAMETERS.read(options)?,
+                most_runs: table::MOST_RUNS.read(options)?,
+                tolerance: table::DESIGN_TOLERANCE.read(options)?,
+                refinement: table::DESIGN_REFINEMENT.read(options)?,
+            },
         };
         case.parameters()?;
         geometry::check(&case)?;
         check_step_order(&case.stepping)?;
+        inverse::check(&case)?;
         Ok(case)
     }
 

@@ -18,6 +18,8 @@ pub struct ReferenceForce {
     pub name: String,
     /// Travel of the punch (mm) and force (N), in the order of time; empty if there is no curve.
     pub curve: Vec<[f64; 2]>,
+    /// What the points are.
+    pub points_name: String,
     /// Travel of the punch (mm), force (N) and how far a result may be from it (N), going down.
     pub points: Vec<[f64; 3]>,
 }
@@ -58,6 +60,11 @@ impl Case {
                 "code_aster 15.2, without friction".to_owned()
             },
             curve,
+            points_name: if points.is_empty() {
+                String::new()
+            } else {
+                "tested values".to_owned()
+            },
             points,
         })
     }

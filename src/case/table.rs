@@ -8,6 +8,7 @@ use std::ops::Bound;
 use std::sync::LazyLock;
 
 use super::hardening::{self, Law};
+use super::inverse::{OptionalPath, OptionalReal, SoughtList};
 use super::kind::{Choice, Flag, Integer, List, Path, Real};
 use super::kind_resuming::{Restarting, WallTime};
 use super::model::Dynamics;
@@ -272,5 +273,39 @@ option_table! {
         name: "overwrite", unit: "", default: "false", group: Group::Resuming, kind: Flag,
         meaning: "Replaces an interrupted run in -output_dir and its checkpoints, which is refused otherwise.",
         value: |case| case.resuming.overwrite,
+    }
+    IDENTIFY: OptionalPath {
+        name: "identify", unit: "", default: "none", group: Group::Inverse, kind: OptionalPath,
+        meaning: "Measured force against stroke, a CSV file with the columns stroke_mm,force_N,uncertainty_N: -parameters are \
+                  identified from it; docs/identification.md.",
+        value: |case| case.inverse.identify.clone(),
+    }
+    DESIGN: OptionalReal {
+        name: "design", unit: "", default: "none", group: Group::Inverse,
+        kind: OptionalReal(Real(Bound::Excluded(0.0), Bound::Excluded(180.0))),
+        meaning: "Wanted angle between the arms in degrees after the punch is withdrawn: -parameters are changed until the sheet has it; \
+                  docs/identification.md.",
+        value: |case| case.inverse.design,
+    }
+    PARAMETERS: SoughtList {
+        name: "parameters", unit: "", default: "none", group: Group::Inverse, kind: SoughtList,
+        meaning: "What -identify or -design may change, and between what; the search starts from the values of these options.",
+        value: |case| case.inverse.parameters.clone(),
+    }
+    MOST_RUNS: Integer {
+        name: "most_runs", unit: "", default: "15", group: Group::Inverse, kind: Integer(1, 999),
+        meaning: "Runs after which -identify or -design gives up.",
+        value: |case| case.inverse.most_runs,
+    }
+    DESIGN_TOLERANCE: Real {
+        name: "design_tolerance", unit: "deg", default: "0.05", group: Group::Inverse, kind: Real::positive(10.0),
+        meaning: "How far the angle of a design may be from the wanted one.",
+        value: |case| case.inverse.tolerance,
+    }
+    DESIGN_REFINEMENT: Integer {
+        name: "design_refinement", unit: "", default: "2", group: Group::Inverse, kind: Integer(1, 8),
+        meaning: "A found design is run once more with this number of elements in the place of each, in both directions; 1 \
+                  leaves this out.",
+        value: |case| case.inverse.refinement,
     }
 }

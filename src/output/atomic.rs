@@ -20,6 +20,14 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     })
 }
 
+/// Writes a value as JSON, as [`write`] does. Numbers that are not finite become `null`.
+pub(crate) fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), OutputError> {
+    let mut text =
+        serde_json::to_vec_pretty(value).map_err(|error| OutputError::write(path, error))?;
+    text.push(b'\n');
+    write(path, &text)
+}
+
 /// Brings a file or the names in a folder to the disk.
 pub(super) fn sync(path: &Path) -> std::io::Result<()> {
     File::open(path)?.sync_all()

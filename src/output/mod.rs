@@ -25,6 +25,7 @@ pub mod verdict;
 pub mod vtkhdf;
 
 pub use arrays::Arrays;
+pub(crate) use atomic::write_json;
 pub use derivatives::{DerivativeFile, DerivativeRow, DerivativeTable};
 pub use error::OutputError;
 pub(crate) use error::agree;

@@ -126,6 +126,11 @@ impl<W: Write> Monitor<W> {
         Ok(())
     }
 
+    /// Shows nothing any more; the log goes on.
+    pub fn silence(&mut self) {
+        self.out = None;
+    }
+
     /// Shows [`header`]; from now on the clock runs for a run that is at time `t` (ms).
     pub fn header(&mut self, t: f64) {
         self.progress.take(t, Instant::now());

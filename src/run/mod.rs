@@ -45,6 +45,7 @@ use crate::sensitivity::Beside;
 use crate::system::{History, Problem, System};
 use ledger::Spent;
 use outcome::why;
+pub use setup::refuse_bad_options;
 use setup::{blas, defaults, doubtful, linear, unread};
 use simulation::Simulation;
 use step_size::landmarks;

@@ -1,5 +1,7 @@
 //! Bad inputs and the sentence each gets: the table behind tests/bad_input.rs and docs/bad-input.md.
 
+pub mod inverse;
+
 /// How an input reaches the program.
 pub enum Given {
     /// Words of the command line, with blanks between.

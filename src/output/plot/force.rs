@@ -114,7 +114,7 @@ fn curves<'a>(records: &[StepRecord], reference: &'a ReferenceForce) -> Vec<Curv
     if !reference.points.is_empty() {
         // Drawn as bars, not as a line; here for the legend.
         curves.push(Curve {
-            name: "tested values",
+            name: &reference.points_name,
             color: REFERENCE,
             width: 2.0,
             points: Vec::new(),
@@ -210,6 +210,7 @@ mod tests {
         let reference = ReferenceForce {
             name: "somebody".into(),
             curve: vec![[0.0, 0.0], [1.0, 50.0]],
+            points_name: "tested values".into(),
             points: vec![[0.5, 25.0, 1.0]],
         };
         let with = force_svg("nothing yet", &[], &reference).unwrap();

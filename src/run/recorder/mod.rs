@@ -75,6 +75,9 @@ impl Recorder {
         };
         let history = agree(comm, mine)?;
         let mut monitor = Monitor::new(comm.rank(), stdout(), case.loading.motion());
+        if case.output.quiet {
+            monitor.silence();
+        }
         let mine = match comm.rank() {
             0 => monitor.log_to(&folder.log(), resumed.is_some()),
             _ => Ok(()),

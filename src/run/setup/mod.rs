@@ -8,5 +8,6 @@ pub(super) mod doubtful;
 mod forbidden;
 pub(super) mod linear;
 pub(super) mod unread;
+pub use unread::refuse_bad_options;
 
 pub(super) use linear::LinearSolve;

@@ -79,10 +79,7 @@ const fn stepper(dynamics: Dynamics) -> Reserved {
 ///
 /// # Errors
 /// Which one, why, and what to do.
-pub(in crate::run) fn refuse_bad_options(
-    case: &Case,
-    comm: &SimpleCommunicator,
-) -> Result<(), RunError> {
+pub fn refuse_bad_options(case: &Case, comm: &SimpleCommunicator) -> Result<(), RunError> {
     let stepper = stepper(case.loading.dynamics);
     for reserved in RESERVED.iter().chain([&stepper]) {
         if let Some(given) = petsc::options::get(reserved.option)?

@@ -1,0 +1,210 @@
+//! A measured force against the stroke of the punch, as a table.
+
+use std::path::Path;
+
+use super::error::CaseError;
+use crate::text::{self, shortened, show_real};
+
+/// The columns in any order; their names hold the units.
+const COLUMNS: [&str; 3] = ["stroke_mm", "force_N", "uncertainty_N"];
+/// Points closer than this (mm) would only shorten the time steps.
+const CLOSEST: f64 = 1e-3;
+
+/// A point of the curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeasuredPoint {
+    /// Travel of the punch since its first touch, mm.
+    pub stroke: f64,
+    /// Force on the punch, whole sheet, N.
+    pub force: f64,
+    /// Standard uncertainty of the force, N.
+    pub uncertainty: f64,
+}
+
+type Refusal = (Option<u64>, String);
+
+/// The points of the file at `path`, going down to at most `stroke` (mm), more than `parameters` of them.
+///
+/// # Errors
+/// [`CaseError::Measured`].
+pub fn read_measured(
+    path: &str,
+    stroke: f64,
+    parameters: usize,
+) -> Result<Vec<MeasuredPoint>, CaseError> {
+    let blame = |(line, problem)| CaseError::Measured {
+        path: shortened(path),
+        line,
+        problem,
+    };
+    let text = text::read(Path::new(path)).map_err(|reason| {
+        let needed = format!(
+            "specify the path of a CSV file with the header {}",
+            COLUMNS.join(",")
+        );
+        blame((
+            None,
+            format!("the file cannot be read ({reason}); {needed}"),
+        ))
+    })?;
+    let points = points(&text, stroke).map_err(blame)?;
+    if points.len() <= parameters {
+        return Err(blame((
+            None,
+            format!(
+                "points: {}; more than the number of parameters looked for, {parameters}, are needed",
+                points.len()
+            ),
+        )));
+    }
+    Ok(points)
+}
+
+fn points(text: &str, greatest: f64) -> Result<Vec<MeasuredPoint>, Refusal> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut table = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes());
+    let malformed = |error: csv::Error| {
+        let line = error.position().map(|position| line_of(text, position));
+        (
+            line,
+            "the line has another number of columns than the header; each needs a comma".to_owned(),
+        )
+    };
+    let header = table.headers().map_err(malformed)?.clone();
+    let place = |name: &str| header.iter().position(|word| word == name);
+    let (Some(stroke), Some(force), Some(uncertainty), 3) = (
+        place(COLUMNS[0]),
+        place(COLUMNS[1]),
+        place(COLUMNS[2]),
+        header.len(),
+    ) else {
+        let given = shortened(&header.iter().collect::<Vec<_>>().join(","));
+        let problem = format!(
+            "the header is '{given}' instead of {}; convert to these units and name the columns so",
+            COLUMNS.join(",")
+        );
+        return Err((None, problem));
+    };
+    let mut points: Vec<MeasuredPoint> = Vec::new();
+    for row in table.records() {
+        let row = row.map_err(malformed)?;
+        let line = row.position().map(|position| line_of(text, position));
+        let number = |column: usize| {
+            let text = row.get(column).unwrap_or_default();
+            let value = text.parse().ok().filter(|value: &f64| value.is_finite());
+            value.ok_or_else(|| {
+                let name = header.get(column).unwrap_or_default();
+                (
+                    line,
+                    format!(
+                        "{name} '{}' is not a finite number such as 180.5",
+                        shortened(text)
+                    ),
+                )
+            })
+        };
+        let point = MeasuredPoint {
+            stroke: number(stroke)?,
+            force: number(force)?,
+            uncertainty: number(uncertainty)?,
+        };
+        check(point, points.last(), greatest).map_err(|problem| (line, problem))?;
+        points.push(point);
+    }
+    Ok(points)
+}
+
+/// The line of a row: its position is before the empty lines and comments above it.
+fn line_of(text: &str, position: &csv::Position) -> u64 {
+    let first = position.line();
+    let before = text.lines().skip(first.saturating_sub(1) as usize);
+    let skipped = |line: &&str| line.trim().is_empty() || line.starts_with('#');
+    first + before.take_while(skipped).count() as u64
+}
+
+fn check(
+    point: MeasuredPoint,
+    before: Option<&MeasuredPoint>,
+    greatest: f64,
+) -> Result<(), String> {
+    let MeasuredPoint {
+        stroke,
+        uncertainty,
+        ..
+    } = point;
+    let least = before.map_or(0.0, |before| before.stroke) + CLOSEST;
+    if stroke < least {
+        return Err(format!(
+            "stroke_mm {}; at least {} is needed, {CLOSEST} above the line before (0 at the start): only the way down \
+             is compared, so leave out the rest",
+            show_real(stroke),
+            show_real(text::rounded(least, 12)),
+        ));
+    }
+    if stroke > greatest * (1.0 + 1e-12) {
+        return Err(format!(
+            "stroke_mm {} is beyond -stroke {}; increase -stroke, or leave out the line",
+            show_real(stroke),
+            show_real(greatest)
+        ));
+    }
+    if uncertainty <= 0.0 {
+        return Err(format!(
+            "uncertainty_N {}; it must be above 0: give the standard uncertainty of the force",
+            show_real(uncertainty)
+        ));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GOOD: &str = "# a press\nforce_N, stroke_mm ,uncertainty_N\n49.8,1,0.5\n\n84.7,2,0.8\n";
+
+    #[test]
+    fn columns_may_stand_in_any_order() {
+        let point = |stroke, force, uncertainty| MeasuredPoint {
+            stroke,
+            force,
+            uncertainty,
+        };
+        let expected = vec![point(1.0, 49.8, 0.5), point(2.0, 84.7, 0.8)];
+        assert_eq!(points(GOOD, 28.5), Ok(expected));
+    }
+
+    #[test]
+    fn what_cannot_be_compared_is_refused_with_its_line() {
+        for (from, to, line, part) in [
+            (
+                "force_N",
+                "force_kN",
+                None,
+                "the header is 'force_kN,stroke_mm",
+            ),
+            ("84.7,2,0.8", "84.7,2", Some(5), "another number of columns"),
+            ("84.7,2,0.8", "84.7,2,0", Some(5), "above 0"),
+            (
+                "84.7,2,0.8",
+                "NaN,2,0.8",
+                Some(5),
+                "force_N 'NaN' is not a finite number",
+            ),
+            (
+                "84.7,2,0.8",
+                "84.7,0.5,0.8",
+                Some(5),
+                "at least 1.001 is needed",
+            ),
+            ("84.7,2,0.8", "84.7,29,0.8", Some(5), "beyond -stroke 28.5"),
+        ] {
+            let (at, problem) = points(&GOOD.replace(from, to), 28.5).unwrap_err();
+            assert_eq!(at, line, "{problem}");
+            assert!(problem.contains(part), "{problem}");
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! What a design shows and leaves behind: a table of its runs, and `design.json`.
+
+use serde::Serialize;
+
+use super::design::{Found, Trial};
+use super::report::aligned;
+use crate::case::Sought;
+use crate::output::banner::banner;
+use crate::output::summary::Status;
+use crate::output::{OutputDir, OutputError, write_json};
+use crate::text::number;
+
+const JSON: &str = "design.json";
+
+/// The content of `design.json`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct Design {
+    pub wanted_deg: f64,
+    pub tolerance_deg: f64,
+    pub found: Found,
+    pub runs: usize,
+    pub seconds: f64,
+    pub parameters: Vec<&'static str>,
+    pub start: Vec<f64>,
+    pub best: Trial,
+    /// How much finer the mesh of the confirming run is.
+    pub refinement: usize,
+    /// The angle there, if it was run and solved.
+    pub confirmation_deg: Option<f64>,
+    pub trials: Vec<Trial>,
+}
+
+impl Design {
+    /// Writes the file. Not collective.
+    pub fn write(&self, folder: &OutputDir) -> Result<(), OutputError> {
+        write_json(&folder.file(JSON), self)
+    }
+
+    /// The last table and the banner.
+    pub fn text(&self, sought: &[Sought], folder: &OutputDir) -> String {
+        let mut rows = vec![self.heads(sought)];
+        rows.extend(self.trials.iter().map(|trial| self.row(trial)));
+        let (status, headline) = match self.found {
+            Found::Within => (Status::Finished, "FINISHED: the angle is reached"),
+            Found::OutOfReach => (
+                Status::NotConverged,
+                "FINISHED, but the angle cannot be reached within the bounds",
+            ),
+            Found::RunsUsedUp => (
+                Status::NotConverged,
+                "FINISHED, but the angle was not reached",
+            ),
+        };
+        let values = self.parameters.iter().zip(&self.best.values).zip(sought);
+        let values: Vec<String> = values
+            .map(|((name, value), sought)| format!("-{name} {} {}", number(*value), sought.unit))
+            .collect();
+        let mut facts = vec![
+            (
+                "wanted",
+                format!(
+                    "{} deg, within {}",
+                    number(self.wanted_deg),
+                    number(self.tolerance_deg)
+                ),
+            ),
+            (
+                "nearest",
+                format!(
+                    "{:.3} deg with {}",
+                    self.best.angle_deg,
+                    values.join(", ").trim_end()
+                ),
+            ),
+            ("runs", format!("{} in {:.1} s", self.runs, self.seconds)),
+        ];
+        if self.found == Found::Within && self.refinement > 1 {
+            facts.push(("finer mesh", self.confirmation()));
+        }
+        if self.found == Found::RunsUsedUp {
+            facts.push((
+                "try",
+                "more runs with -most_runs, or a start that is nearer".to_owned(),
+            ));
+        }
+        facts.push(("results", folder.path().display().to_string()));
+        format!("\n{}\n{}", aligned(&rows), banner(status, headline, &facts))
+    }
+
+    fn confirmation(&self) -> String {
+        let mesh = format!("{0} x {0} elements in the place of each", self.refinement);
+        match self.confirmation_deg {
+            Some(angle) => format!(
+                "{angle:.3} deg, {:+.3} from the wanted angle ({mesh})",
+                angle - self.wanted_deg
+            ),
+            None => format!("not solved to its end ({mesh})"),
+        }
+    }
+
+    fn heads(&self, sought: &[Sought]) -> Vec<String> {
+        let with_unit = |s: &Sought| format!("{} {}", s.name, s.unit).trim_end().to_owned();
+        let mut heads = vec!["run".to_owned()];
+        heads.extend(sought.iter().map(with_unit));
+        heads.extend(["angle deg", "miss deg"].map(str::to_owned));
+        heads
+    }
+
+    fn row(&self, trial: &Trial) -> Vec<String> {
+        let mut row = vec![
+            trial
+                .folder
+                .rsplit('/')
+                .next()
+                .unwrap_or_default()
+                .to_owned(),
+        ];
+        row.extend(trial.values.iter().map(|value| number(*value)));
+        row.push(format!("{:.3}", trial.angle_deg));
+        row.push(format!("{:+.3}", trial.angle_deg - self.wanted_deg));
+        row
+    }
+}

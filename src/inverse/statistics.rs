@@ -1,0 +1,173 @@
+//! What a curve says about parameters: singular values of the weighted derivatives, and the covariance that follows.
+
+/// A singular value below this share of the largest is rounding: the curve says nothing about its direction.
+const ROUNDING: f64 = 1e-10;
+/// Sweeps of the Jacobi rotations; five are usual.
+const MOST_SWEEPS: usize = 60;
+
+/// Singular values, the largest first, and their right singular vectors, of a matrix given by its columns. One-sided Jacobi
+/// rotations (Hestenes 1958, J. SIAM 6, 51-90) get small ones as exactly as large ones.
+pub fn singular_values(mut columns: Vec<Vec<f64>>) -> (Vec<f64>, Vec<Vec<f64>>) {
+    let n = columns.len();
+    let unit = |i: usize| (0..n).map(|k| f64::from(u8::from(i == k))).collect();
+    let mut vectors: Vec<Vec<f64>> = (0..n).map(unit).collect();
+    for _ in 0..MOST_SWEEPS {
+        let mut turned = false;
+        for (p, q) in (0..n).flat_map(|p| (p + 1..n).map(move |q| (p, q))) {
+            let (a, b) = (dot(&columns[p], &columns[p]), dot(&columns[q], &columns[q]));
+            let c = dot(&columns[p], &columns[q]);
+            if c.abs() <= f64::EPSILON * (a * b).sqrt() {
+                continue;
+            }
+            turned = true;
+            let zeta = (b - a) / (2.0 * c);
+            let tangent = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
+            rotate(&mut columns, p, q, tangent);
+            rotate(&mut vectors, p, q, tangent);
+        }
+        if !turned {
+            break;
+        }
+    }
+    let mut pairs: Vec<(f64, Vec<f64>)> = columns
+        .iter()
+        .map(|c| dot(c, c).sqrt())
+        .zip(vectors)
+        .collect();
+    pairs.sort_by(|one, other| other.0.total_cmp(&one.0));
+    pairs.into_iter().unzip()
+}
+
+fn rotate(columns: &mut [Vec<f64>], p: usize, q: usize, tangent: f64) {
+    let cosine = 1.0 / tangent.hypot(1.0);
+    let sine = cosine * tangent;
+    let (left, right) = columns.split_at_mut(q);
+    for (x, y) in left[p].iter_mut().zip(&mut right[0]) {
+        (*x, *y) = (cosine * *x - sine * *y, sine * *x + cosine * *y);
+    }
+}
+
+/// The scalar product.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// How well parameters are determined; all in the parameters' scale.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Statistics {
+    /// Singular values of the weighted derivatives, the largest first: 1 / s is the standard error along its direction.
+    pub singular_values: Vec<f64>,
+    /// The directions, of length 1.
+    pub directions: Vec<Vec<f64>>,
+    /// The inverse of the normal matrix JᵀWJ; infinite where the curve says nothing.
+    pub covariance: Vec<Vec<f64>>,
+}
+
+impl Statistics {
+    /// From the derivatives of all weighted residuals by each parameter.
+    pub fn of(columns: &[Vec<f64>]) -> Self {
+        let (singular_values, directions) = singular_values(columns.to_vec());
+        let n = columns.len();
+        let floor = ROUNDING * singular_values.first().copied().unwrap_or_default();
+        let entry = |i: usize, k: usize| {
+            let of_direction = |(&s, v): (&f64, &Vec<f64>)| match v[i] * v[k] {
+                // A direction without any influence, and rounding in what is not part of it.
+                part if s > floor => part / (s * s),
+                part if part.abs() < ROUNDING => 0.0,
+                part => part.signum() * f64::INFINITY,
+            };
+            singular_values
+                .iter()
+                .zip(&directions)
+                .map(of_direction)
+                .sum()
+        };
+        let covariance = (0..n)
+            .map(|i| (0..n).map(|k| entry(i, k)).collect())
+            .collect();
+        Self {
+            singular_values,
+            directions,
+            covariance,
+        }
+    }
+
+    /// Standard error of each parameter.
+    pub fn standard_errors(&self) -> Vec<f64> {
+        (0..self.covariance.len())
+            .map(|i| self.covariance[i][i].sqrt())
+            .collect()
+    }
+
+    /// Correlation of two parameters; not a number where one of them is not determined at all.
+    pub fn correlation(&self, i: usize, k: usize) -> f64 {
+        self.covariance[i][k] / (self.covariance[i][i] * self.covariance[k][k]).sqrt()
+    }
+
+    /// How far the best values are from here by the linear model, in standard errors of the worst direction; `gradient` is
+    /// that of half the sum of squares. Directions whose standard error is above `longest` count as if it were that.
+    pub fn distance(&self, gradient: &[f64], longest: f64) -> f64 {
+        let along = |(s, v): (&f64, &Vec<f64>)| dot(v, gradient) / s.max(1.0 / longest);
+        let along = self.singular_values.iter().zip(&self.directions).map(along);
+        along.map(|step| step * step).sum::<f64>().sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_known_matrix_has_its_singular_values() {
+        // (3 0; 4 5): the product is 15, the sum of squares 50.
+        let (values, vectors) = singular_values(vec![vec![3.0, 4.0], vec![0.0, 5.0]]);
+        assert!(
+            (values[0] - 45f64.sqrt()).abs() < 1e-14 && (values[1] - 5f64.sqrt()).abs() < 1e-14
+        );
+        assert!((vectors[0][0].abs() - 0.5f64.sqrt()).abs() < 1e-14);
+        assert!(dot(&vectors[0], &vectors[1]).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_small_singular_value_keeps_its_digits() {
+        let columns = vec![vec![1.0, 0.0, 0.0], vec![1.0, 1e-9, 0.0]];
+        let (values, _) = singular_values(columns);
+        assert!(
+            (values[1] * values[0] / 1e-9 - 1.0).abs() < 1e-6,
+            "{values:?}"
+        );
+    }
+
+    #[test]
+    fn the_covariance_is_the_inverse_of_the_normal_matrix() {
+        let columns = [vec![1.0, 2.0, 2.0], vec![0.5, -1.0, 3.0]];
+        let statistics = Statistics::of(&columns);
+        for i in 0..2 {
+            for k in 0..2 {
+                let product: f64 = (0..2)
+                    .map(|j| statistics.covariance[i][j] * dot(&columns[j], &columns[k]))
+                    .sum();
+                assert!((product - f64::from(u8::from(i == k))).abs() < 1e-14);
+            }
+        }
+    }
+
+    #[test]
+    fn two_parameters_with_one_effect_are_not_determined_and_a_third_one_is() {
+        let columns = [
+            vec![1.0, 2.0, 0.0],
+            vec![2.0, 4.0, 0.0],
+            vec![0.0, 0.0, 10.0],
+        ];
+        let errors = Statistics::of(&columns).standard_errors();
+        assert!(errors[0].is_infinite() && errors[1].is_infinite());
+        assert!((errors[2] - 0.1).abs() < 1e-14);
+    }
+
+    #[test]
+    fn the_distance_to_the_minimum_is_in_standard_errors() {
+        // One parameter with the standard error 1/5, three standard errors away: gradient = 25 * 0.6.
+        let statistics = Statistics::of(&[vec![3.0, 4.0]]);
+        assert!((statistics.distance(&[15.0], 1.0) - 3.0).abs() < 1e-14);
+    }
+}
