@@ -208,7 +208,7 @@ option_table! {
     }
     EXTRAPOLATE: Flag {
         name: "extrapolate", unit: "", default: "true", group: Group::Stepping, kind: Flag,
-        meaning: "Start each Newton solve from the displacements extrapolated from the last step.",
+        meaning: "Start each Newton solve from displacements and contact extrapolated from the last steps.",
         value: |case| case.stepping.extrapolate,
     }
     NEWTON_TOLERANCE: Real {
