@@ -128,8 +128,8 @@ mod tests {
     #[test]
     fn a_zone_moves_on_as_it_moved() {
         let (before, now) = (parabola(10.0, 0.2), parabola(10.05, 0.7));
-        for along in [9.99, 10.05, 10.13, 10.2] {
-            // Twice the time: from 10.05 to 10.15. Half the spacing's square is what interpolation may miss.
+        for along in [10.04, 10.1, 10.15, 10.27] {
+            // Twice the time: from 10.05 to 10.15. The distance is known to 0.02 mm, and a parabola is interpolated to a quarter of the spacing squared.
             let exact = (along - 10.15_f64).powi(2) - 0.01;
             let expected = now.expected(along, &before, 2.0).unwrap();
             assert!(
