@@ -90,7 +90,8 @@ pub fn run_in(
 }
 
 /// Standard error without what Open MPI 5 says about a rank that ended with another code than 0: a paragraph between
-/// two lines of dashes that begins with the name of its starter.
+/// two lines of dashes that begins with the name of its starter, and on a busy machine a line about a rank that is gone
+/// already.
 fn without_starter(text: &str) -> String {
     let rule = "-".repeat(74);
     let mut kept = String::new();
@@ -106,7 +107,8 @@ fn without_starter(text: &str) -> String {
             kept += &rule;
         }
     }
-    kept
+    let says_something = |line: &&str| !line.contains("] PMIX ERROR: PMIX_ERR_UNREACH");
+    kept.split_inclusive('\n').filter(says_something).collect()
 }
 
 /// The columns of a run's `history.csv` by name.
