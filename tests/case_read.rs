@@ -160,19 +160,46 @@ fn what_is_shown_reads_back_as_the_same_case() {
         ("checkpoint_every", "20"),
         ("checkpoint_minutes", "7.5"),
         ("wall_limit", "3600"),
-        ("restart", "results/checkpoint-000123"),
         ("overwrite", "true"),
         ("dry_run", "true"),
         ("sensitivity", "friction_coefficient,table_factor"),
     ];
-    let case = read(&given).unwrap();
-    let shown: BTreeMap<String, String> = case
-        .options()
-        .into_iter()
-        .map(|(name, value)| (name.to_owned(), value))
-        .collect();
-    assert_eq!(Case::read(&shown).unwrap(), case);
-    assert_eq!(shown, options(&given));
+    // What only one run, an identification or a design can have.
+    let single = [
+        ("restart", "results/checkpoint-000123"),
+        ("identify", "none"),
+        ("design", "none"),
+        ("parameters", "none"),
+        ("most_runs", "15"),
+        ("design_tolerance", "0.05"),
+        ("design_refinement", "2"),
+    ];
+    let searched = |identify, design| {
+        [
+            ("restart", "no"),
+            ("identify", identify),
+            ("design", design),
+            ("parameters", "sheet_thickness:0.5:1"),
+            ("most_runs", "12"),
+            ("design_tolerance", "0.1"),
+            ("design_refinement", "3"),
+        ]
+    };
+    for of_kind in [
+        single,
+        searched("curve.csv", "none"),
+        searched("none", "50.5"),
+    ] {
+        let given = [&given[..], &of_kind].concat();
+        let case = read(&given).unwrap();
+        let shown: BTreeMap<String, String> = case
+            .options()
+            .into_iter()
+            .map(|(name, value)| (name.to_owned(), value))
+            .collect();
+        assert_eq!(Case::read(&shown).unwrap(), case);
+        assert_eq!(shown, options(&given));
+    }
 }
 
 #[test]
