@@ -177,6 +177,7 @@ fn a_punch_that_passes_between_the_points_is_reported() {
             note.contains("between its contact points") && note.contains("use -sheet_nx"),
             "{note}"
         );
-        assert!(ended.stdout.contains("=  note     "), "{}", ended.stdout);
+        // Such a run may reach the end or not; the note stands in either banner.
+        assert!(ended.stdout.contains("  note     A tool"), "{}", ended.stdout);
     }
 }
