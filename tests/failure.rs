@@ -178,6 +178,10 @@ fn a_punch_that_passes_between_the_points_is_reported() {
             "{note}"
         );
         // Such a run may reach the end or not; the note stands in either banner.
-        assert!(ended.stdout.contains("  note     A tool"), "{}", ended.stdout);
+        assert!(
+            ended.stdout.contains("  note     A tool"),
+            "{}",
+            ended.stdout
+        );
     }
 }
