@@ -50,7 +50,7 @@ def run(case, variant):
     folder = RESULTS / f"{case}-{variant}"
     if not (os.environ.get("REUSE") and (folder / "summary.json").exists()):
         print("run:", case, variant, file=sys.stderr, flush=True)
-        start = ["mpirun", "-q", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+        start = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
         command = [*start, PROGRAM, "-options_file", f"inputs/{case}.opts", *options, "-output_every", "0"]
         # A verdict that does not hold is what this is for.
         within = ["bash", "-c", 'source scripts/environment.sh && exec "$@"', "run"]

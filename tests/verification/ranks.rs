@@ -28,7 +28,7 @@ pub fn by_two(cases: &[&Case]) -> Result<Found> {
         return Ok(Found::default());
     }
     let output = Command::new("mpirun")
-        .args(["-q", "--oversubscribe", "--timeout", LIMIT, "-n", "2"])
+        .args(["--oversubscribe", "--timeout", LIMIT, "-n", "2"])
         .arg(std::env::current_exe()?)
         .arg(WORKER)
         .args(names)
