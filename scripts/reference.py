@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Makes docs/reference/: the reference solution as data, each value with its bar, and a figure.
 
-  scripts/reference.py run [frictionless|friction]     makes the runs, in results-reference/
-  scripts/reference.py write                           writes the files from them
+  scripts/reference.py run [CASE[:RUN] ...]     makes the runs, in results-reference/; CASE: frictionless or friction
+  scripts/reference.py write                    writes the files from them
 
 Runs of each case, all to full withdrawal: `reference` on the finest mesh, `coarse` with inputs/released.opts, and `steps` like
 `coarse` with another longest step. A bar is |reference - coarse| + |steps - coarse|: the whole of what mesh, integration,
@@ -22,7 +22,7 @@ PROGRAM = os.environ.get("SSNP155", str(ROOT / "target/release/ssnp155"))
 RESULTS = ROOT / "results-reference"
 DATA = ROOT / "docs/reference"
 CASES = {"frictionless": "inputs/ssnp155-springback.opts", "friction": "inputs/ssnp155-friction-springback.opts"}
-FINEST = ["-sheet_nx", "340", "-sheet_ny", "6", "-quadrature_thickness", "5", "-contact_points_per_edge", "8"]
+FINEST = ["-sheet_nx", "340", "-contact_points_per_edge", "8"]
 # Every half millimetre down: steps end there, so nothing is interpolated on the way down.
 REPORTED = ["-report_strokes", ",".join(f"{0.5 * k:g}" for k in range(1, 57))]
 VARIANTS = {"reference": FINEST, "coarse": [], "steps": ["-dt_max", "8"]}
@@ -30,11 +30,17 @@ QUANTITIES = [("force_N", "force of the whole sheet", "%.3f"), ("dy_A_punch_mm",
               ("dy_A_sheet_mm", "DY of A, sheet side", "%.5f"), ("angle_deg", "angle between the arms", "%.4f")]
 # Sections through the thickness: middle of the sheet, the bend, the end of the bend at the shoulder; mm from the middle.
 SECTIONS = [0, 15, 30]
+# Force of the punch, N, from which the sheet is held.
+LEAST_FORCE = 0.01
+# Share of the largest pressure from which a contact point carries.
+CARRIES = 1e-6
 CODE_ASTER = ROOT / "inputs/reference/code_aster-15.2-frictionless.csv"
 
 
-def make(case):
+def make(case, only):
     for name, changed in VARIANTS.items():
+        if only not in ("", name):
+            continue
         folder = RESULTS / f"{case}-{name}"
         if os.environ.get("REUSE") and (folder / "summary.json").exists():
             continue
@@ -98,6 +104,12 @@ def write(path, lines, columns, rows):
     print("written:", path.relative_to(ROOT), len(rows), "rows")
 
 
+def bar(value, coarse, steps):
+    """A bar to two digits; 0 where only rounding is left."""
+    width = abs(value - coarse) + abs(steps - coarse)
+    return f"{width:.2g}" if width > 1e-9 else "0"
+
+
 def history(case):
     """Writes force, DY and angle with their bars; returns the rows for the figure and the released angles."""
     runs = {name: load(case, name) for name in VARIANTS}
@@ -109,7 +121,7 @@ def history(case):
         line = [way, f"{travel:g}"]
         for name, _, form in QUANTITIES:
             value, coarse, steps = (at(runs[run][1], time, name) for run in ("reference", "coarse", "steps"))
-            line += [form % value, "%.2g" % (abs(value - coarse) + abs(steps - coarse))]
+            line += [form % value, bar(value, coarse, steps)]
         table.append(line)
     write(DATA / f"{case}-history.csv", head(case, "Force, displacement of A and angle against the travel of the punch", summary),
           columns, table)
@@ -117,7 +129,7 @@ def history(case):
     for place in runs["reference"][0]["angles_deg"]:
         value, coarse, steps = (runs[run][0]["angles_deg"].get(place) for run in ("reference", "coarse", "steps"))
         if None not in (value, coarse, steps):
-            angles.append([place, f"{value:.4f}", "%.2g" % (abs(value - coarse) + abs(steps - coarse))])
+            angles.append([place, f"{value:.4f}", bar(value, coarse, steps)])
     write(DATA / f"{case}-angles.csv", head(case, "Angle between the arms", summary), ["state", "angle_deg", "bar_angle_deg"], angles)
     return table
 
@@ -126,22 +138,28 @@ def contact_regions(case):
     """Writes where each face of the sheet carries a pressure, as intervals of x in the undeformed sheet."""
     from field_files import Fields
 
-    summary, _ = load(case, "reference")
+    summary, history_rows = load(case, "reference")
     options = summary["provenance"]["options"]
     stroke, down, back = (float(options[name]) for name in ("stroke", "time_load", "time_unload"))
     fields = Fields(RESULTS / f"{case}-reference" / "contact.vtkhdf")
-    spacing = float(options["sheet_length"]) / 2 / float(options["sheet_nx"]) / float(options["contact_points_per_edge"])
+    apart = 1.01 * float(options["sheet_length"]) / 2 / float(options["sheet_nx"])
     rows = []
     for time in fields.times:
+        # When the punch has left the sheet, what touches where is rounding.
+        if at(history_rows, time, "force_N") < LEAST_FORCE:
+            continue
         points, arrays = fields.at(time)
+        pressure = arrays["contact_pressure"]
+        # Open points keep multipliers of the size of rounding.
+        least = CARRIES * max(pressure.max(), 1e-300)
         travel = stroke * time / down if time <= down else stroke * (1.0 - (time - down) / back)
         for face, height in [("punch", float(options["sheet_thickness"])), ("die", 0.0)]:
-            here = [k for k in range(len(points)) if abs(points[k][1] - height) < 1e-9 and arrays["contact_pressure"][k] > 0.0]
+            here = [k for k in range(len(points)) if abs(points[k][1] - height) < 1e-9 and pressure[k] > least]
             places = sorted(float(points[k][0]) for k in here)
-            for first, last in intervals(places, 2.5 * spacing):
+            for first, last in intervals(places, apart):
                 rows.append(["down" if time <= down + 1e-9 else "back", f"{travel:.4f}", face, f"{first:.4f}", f"{last:.4f}"])
     write(DATA / f"{case}-contact.csv", [*head(case, "Where the sheet touches: first and last contact point of each region", summary),
-          f"# Points that carry are one region where they are no more than {2.5 * spacing:.3f} mm apart."],
+          f"# Points that carry are one region where they are no more than an element, {apart:.3f} mm, apart; x in the undeformed sheet."],
           ["way", "travel_mm", "tool", "from_x_mm", "to_x_mm"], rows)
 
 
@@ -193,7 +211,7 @@ def shapes(case):
 def figure(tables):
     """Force against the travel of the punch, with code_aster's curve, as SVG."""
     width, height, left, bottom, right, top = 820, 460, 64, 52, 16, 18
-    most_x, most_y = 28.5, 320.0
+    most_x, most_y = 29.0, 320.0
 
     def place(x, y):
         return (left + (width - left - right) * x / most_x, height - bottom - (height - bottom - top) * y / most_y)
@@ -230,7 +248,7 @@ def figure(tables):
         legend += [(f"reference, {label}", color, ""), (f"reference, {label}, on the way back", color, dotted)]
     for number, (label, color, dash) in enumerate(legend):
         y = height - bottom - 16 - 19 * (len(legend) - 1 - number)
-        x = place(10.5, 0)[0]
+        x = place(2.8, 0)[0]
         out += [f'<line x1="{x}" y1="{y - 4}" x2="{x + 28}" y2="{y - 4}" stroke="{color}" stroke-width="1.6"{dash}/>',
                 f'<text x="{x + 36}" y="{y}">{label}</text>']
     (a, b), (c, _) = place(0, 0), place(most_x, 0)
@@ -243,8 +261,10 @@ def figure(tables):
 def main(arguments):
     match arguments:
         case ["run", *cases]:
-            for case in cases or CASES:
-                make(case)
+            for case, _, only in (word.partition(":") for word in cases or CASES):
+                if case not in CASES or only not in ("", *VARIANTS):
+                    sys.exit(__doc__)
+                make(case, only)
         case ["write"]:
             tables = {}
             for case in CASES:

@@ -8,7 +8,7 @@ The base is inputs/released.opts. Without friction the tools vanish at full stro
 nothing. With friction the punch goes all the way out, and the sheet yields again on that way. OPTIONS go to every run
 after those of the base, before what a run changes. Tables are Markdown on standard output. The program is
 target/release/ssnp155, or $SSNP155. Results stay in results-released-study/; with REUSE=1 a run that is there is not made again,
-and with ONLY=WORD,WORD only the runs whose names begin with a WORD are made.
+and with ONLY=WORD,WORD only the base and the runs named WORD or WORD-... are made.
 """
 import json
 import os
@@ -98,12 +98,12 @@ def main(extra):
         sys.exit(__doc__)
     friction = "-friction_coefficient" in extra
     way = WITHDRAWN if friction else LOADING
-    only = tuple(word for word in os.environ.get("ONLY", "").split(",") if word)
+    only = [word for word in os.environ.get("ONLY", "").split(",") if word]
     heads = ["what", "loaded", "tools vanish", "withdrawn", "to the base", "steps", "refused", "iterations"]
     print("| " + " | ".join(heads) + " |\n" + "|" + "---|" * len(heads))
     base = None
     for name, what, changed in CHANGES + (FRICTION_CHANGES if friction else []):
-        if only and not name.startswith((*only, "base")):
+        if only and name != "base" and not any(name == word or name.startswith(f"{word}-") for word in only):
             continue
         summary = run(("friction-" if friction else "") + name, [*BASE, *way, *extra, *changed])
         loaded, vanish, withdrawn = angles(summary)

@@ -114,7 +114,7 @@ def figure(path, places, stress, y, sections=(2.0, 15.0, 25.0)):
         out += [f'<text x="{left + size * (0.5 + 0.5 * s / reach):.1f}" y="{top + size + 16}" text-anchor="middle">{s}</text>' for s in (-200, 0, 200)]
     out += [f'<text x="44" y="{30 + size * (0.5 - h) + 4:.1f}" text-anchor="end">{h:g}</text>' for h in (-0.5, 0.0, 0.5)]
     out += ['<text x="50" y="290">stress along the sheet, MPa, against the height, mm:</text>',
-            '<text x="360" y="290" fill="#1f6fb4">at full stroke</text>', '<text x="450" y="290" fill="#c8431f">released</text>', "</svg>"]
+            '<text x="400" y="290" fill="#1f6fb4">at full stroke</text>', '<text x="500" y="290" fill="#c8431f">released</text>', "</svg>"]
     pathlib.Path(path).write_text("\n".join(out) + "\n")
 
 
