@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::derivatives;
 use crate::output::{Arrays, OutputError};
+use crate::ranks::rows;
 use crate::run::ledger::{Counts, LEDGER_NUMBERS};
 use crate::run::springback::Springback;
 use crate::sensitivity::Kept;
@@ -129,7 +130,7 @@ impl RunState {
                 refused,
                 newton,
             },
-            springbacks: springbacks.as_chunks().0.iter().map(springback).collect(),
+            springbacks: rows(&springbacks).iter().map(springback).collect(),
             spent: from.get_exactly("spent")?,
             file_rows: [from.get("node_of_row")?, from.get("contact_point_of_row")?],
             derivatives: derivatives::get(from)?,
