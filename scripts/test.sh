@@ -3,7 +3,10 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-bash scripts/install.sh python3 python3-venv chromium chromium-driver
+# What checks formatting and lints is in packages of its own where Rust is Debian's.
+rust=$(command -v cargo || echo /usr/bin/cargo)
+[ "$rust" = /usr/bin/cargo ] && lints=(rustfmt rust-clippy) || lints=()
+bash scripts/install.sh python3 python3-venv chromium chromium-driver "${lints[@]}"
 source scripts/environment.sh
 
 echo "test: formatting, lints, documentation"

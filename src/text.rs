@@ -49,6 +49,15 @@ pub(crate) fn shortened(text: &str) -> String {
     }
 }
 
+/// A number of bytes for people.
+pub(crate) fn size(bytes: u64) -> String {
+    match bytes {
+        0..10_000_000 => format!("{} kB", bytes.div_ceil(1000)),
+        10_000_000..10_000_000_000 => format!("{:.1} MB", bytes as f64 / 1e6),
+        _ => format!("{:.1} GB", bytes as f64 / 1e9),
+    }
+}
+
 /// Shortest text that reads back as the same number, with an exponent where that is easier to read: a value as a person
 /// would write it on the command line.
 pub(crate) fn show_real(value: f64) -> String {
