@@ -120,8 +120,8 @@ def damage(work, choose):
     return refused == sentences == FLIPS + CUTS and accepted == 1
 
 
-def full_disk(work, reference):
-    """Runs on file systems that are too small, then makes them large enough and goes on."""
+def full_disk(work, references):
+    """Runs on 1 and 2 ranks by turns on file systems that are too small, then makes them large enough and goes on."""
     disk = work / "disk"
     disk.mkdir()
     if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", disk], stderr=subprocess.DEVNULL).returncode:
@@ -134,7 +134,8 @@ def full_disk(work, reference):
             shutil.rmtree(disk / "run", ignore_errors=True)
             resize(f"{1200 + 500 * trial}k")
             # Where ranks write together, a full disk must not leave one waiting for the other.
-            ended = run(disk / "run", "-checkpoint_every", "3", ranks=1 + trial % 2, seconds=300)
+            ranks = 1 + trial % 2
+            ended = run(disk / "run", "-checkpoint_every", "3", ranks=ranks, seconds=300)
             if ended.returncode == 0:
                 finished += 1
                 continue
@@ -144,7 +145,8 @@ def full_disk(work, reference):
             resize("200m")
             if checkpoints(disk / "run"):
                 went_on += 1
-                same += run(disk / "run", "-restart").returncode == 0 and rows(disk / "run") == reference
+                resumed = run(disk / "run", "-restart", ranks=ranks)
+                same += resumed.returncode == 0 and rows(disk / "run") == references[ranks - 1]
     finally:
         subprocess.run(["umount", disk], check=True)
     print(f"full disk: {DISKS} sizes, {finished} large enough, {refused} ended with a sentence and code 2; {went_on} had a checkpoint, "
@@ -168,7 +170,7 @@ def main():
     good &= interrupted_somewhere(work, "kill -9 of mpirun, 2 ranks", signal.SIGKILL, 2, choose, two, seconds)
     good &= interrupted_somewhere(work, "SIGUSR1 to mpirun, 2 ranks", signal.SIGUSR1, 2, choose, two, seconds)
     good &= damage(work, choose)
-    good &= full_disk(work, reference)
+    good &= full_disk(work, [reference, two])
     shutil.rmtree(work)
     sys.exit(0 if good else 1)
 
