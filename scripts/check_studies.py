@@ -109,10 +109,11 @@ def through_the_program(folder):
     start = [sys.executable, "-B", SCRIPTS / "study.py"]
     words = ["sample", "24", "--plan", "lhs", "--seed", "2", "--folder", folder, "sheet_thickness=normal:1:0.01",
              "punch_radius=23.4:23.6", "friction_coefficient=0.1:0.17", "--", *TINY]
-    for arguments in (words, ["analyse", folder, "loaded_deg"]):
+    for arguments in (words, ["analyse", folder, "loaded_deg", "--derivatives", "3"]):
         ended = subprocess.run([*start, *arguments], cwd=SCRIPTS.parent, capture_output=True, text=True, check=False)
         expect(ended.returncode == 0, f"{arguments[0]}: {ended.stderr}")
-    expect("| 1 run with derivatives |" in ended.stdout and "| derivatives |" in ended.stdout, f"no derivatives: {ended.stdout}{ended.stderr}")
+    derived = "| 3 with derivatives |" in ended.stdout and "| derivatives |" in ended.stdout
+    expect(derived, f"no derivatives: {ended.stdout}{ended.stderr}")
     for name in ("runs.csv", "loaded_deg.svg", "loaded_deg.png"):
         expect((folder / name).exists() and (folder / name).stat().st_size > 1000, f"{name} is missing or empty")
 

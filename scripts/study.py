@@ -8,8 +8,10 @@
                                                              all combinations of the values
   scripts/study.py sample RUNS NAME=LOW:HIGH NAME=normal:MEAN:DEVIATION ... [--plan lhs|sobol|random] [--seed 1] [CAMPAIGN] [-- OPTION ...]
                                                              values by chance: a Latin hypercube, scrambled Sobol' points, or independent
-  scripts/study.py analyse FOLDER [QUANTITY]                 of a sample: quantiles of a column, withdrawn_deg if none is given, and the
-                                                             parameters its variance comes from, with a figure
+  scripts/study.py analyse FOLDER [QUANTITY] [--derivatives RUNS]
+                                                             of a sample: quantiles of a column, withdrawn_deg if none is given, and the
+                                                             parameters its variance comes from, with a figure; RUNS (5) more runs carry
+                                                             derivatives, 0 for none
 
 The punch is withdrawn in all of them unless an OPTION says otherwise. Tables are Markdown on standard output; options given
 last go to every run. The program is target/release/ssnp155, or $SSNP155.
@@ -69,19 +71,25 @@ def run_plan(command, arguments):
     table = campaign.carry_out(planned, given.folder, given.jobs, given.again, given.keep)
     if command == "factorial":
         rows = [table.rows[number] for number in sorted(table.rows)]
-        tables.table(table.columns, [[tables.rounded(row[column]) for column in table.columns] for row in rows])
+        columns = [column for column in table.columns if any(row[column] for row in rows)]
+        tables.table(columns, [[tables.rounded(row[column]) for column in columns] for row in rows])
     print(f"{given.folder}/runs.csv has the {len(table.rows)} runs")
     for number in table.failed():
         print(f"study: run {number} failed: {table.rows[number]['reason']}", file=sys.stderr)
     sys.exit(1 if table.failed() else 0)
 
 
-def analyse(folder, quantity):
+def analyse(arguments):
+    words = Words(prog="study.py analyse", add_help=False)
+    words.add_argument("folder", type=pathlib.Path)
+    words.add_argument("quantity", nargs="?", default="withdrawn_deg")
+    words.add_argument("--derivatives", type=int, default=5)
+    given = words.parse_intermixed_args(arguments)
     try:
         from studies import uncertainty
     except ImportError as error:
         sys.exit(plan.missing(error, "an analysis"))
-    uncertainty.report(pathlib.Path(folder), quantity)
+    uncertainty.report(given.folder, given.quantity, max(0, given.derivatives))
 
 
 def main(arguments):
@@ -96,10 +104,8 @@ def main(arguments):
             tables.sensitivity(extra)
         case ["factorial" | "sample" as command, *rest]:
             run_plan(command, rest)
-        case ["analyse", folder]:
-            analyse(folder, "withdrawn_deg")
-        case ["analyse", folder, quantity]:
-            analyse(folder, quantity)
+        case ["analyse", *rest]:
+            analyse(rest)
         case _:
             sys.exit(__doc__)
 

@@ -7,7 +7,7 @@ Shares of the variance ("first-order indices", Sobol' 1993) are estimated from t
   bins        the variance of the means in bins of one parameter, the correlation ratio (Pearson 1905) without its bias
               (Kelley 1935); needs no form of the function (Plischke, Borgonovo and Smith 2013)
 
-and a third time without them: derivatives of one run in the middle, (dq/dp sd(p))^2.
+and a third time without them: by derivatives, (dq/dp sd(p))^2.
 """
 import itertools
 
@@ -111,14 +111,9 @@ def deviation_by_resampling(estimate, runs, resamples=RESAMPLES):
 
 
 def linear_shares(parameters, slopes):
-    """Share of each parameter, and the variance, if the quantity were linear with these slopes."""
-    variances = (numpy.array(slopes) * [one.deviation for one in parameters])**2
-    return variances / variances.sum(), variances.sum()
-
-
-def linear(parameters, points, middle, slopes):
-    """The quantity from the run in the middle and its derivatives; its mean is `middle` exactly."""
-    return middle + (points - [one.mean for one in parameters]) @ numpy.array(slopes)
+    """Share of each parameter if the quantity were linear with these slopes."""
+    variances = (slopes * [one.deviation for one in parameters])**2
+    return variances / variances.sum()
 
 
 def controlled_mean(values, control, mean):

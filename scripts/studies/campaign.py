@@ -22,12 +22,12 @@ class Progress:
     def __init__(self, total, present, stream, pause=30.0):
         self.total, self.present, self.stream, self.pause = total, present, stream, pause
         self.terminal = stream.isatty()
-        self.start = self.last = time.monotonic()
+        self.start, self.last = time.monotonic(), None
 
     def show(self, done, failed):
         """`done` of the total are in the table, `failed` of them without a result."""
         now, made = time.monotonic(), done - self.present
-        if not self.terminal and now - self.last < self.pause and done < self.total:
+        if not self.terminal and self.last is not None and now - self.last < self.pause and done < self.total:
             return
         self.last = now
         left = (now - self.start) / made * (self.total - done) if made else None
@@ -36,7 +36,7 @@ class Progress:
         self.stream.flush()
 
     def end(self):
-        if self.terminal:
+        if self.terminal and self.last is not None:
             self.stream.write("\n")
 
 
@@ -140,6 +140,8 @@ def carry_out(plan, folder, jobs, again, keep):
         raise KeyboardInterrupt
 
     signal.signal(signal.SIGTERM, stopped)
+    if missing:
+        progress.show(len(table.rows), len(table.failed()))
     pool = concurrent.futures.ThreadPoolExecutor(jobs)
     waiting = {pool.submit(runs.make, number): number for number in missing}
     try:

@@ -1,4 +1,4 @@
-"""The figure of a sample: how the quantity is spread, what its variance comes from, and how well one run foretells it."""
+"""The figure of a sample: how the quantity is spread, what its variance comes from, and how well derivatives foretell it."""
 import matplotlib
 import numpy
 
@@ -30,7 +30,7 @@ def draw_spread(axes, quantity, sample, marks, control):
     if control:
         foretold = numpy.sort(control(sample.points))
         axes.plot(foretold, (numpy.arange(len(values)) + 0.5) / len(values), color=COLORS["derivatives"], linewidth=1.2,
-                  label="one run and its derivatives")
+                  label=f"linear, from {len(control.each)} runs")
     for probability, (middle, low, high) in zip(PROBABILITIES, marks):
         low, high = (low if numpy.isfinite(low) else values[0]), (high if numpy.isfinite(high) else values[-1])
         axes.errorbar(middle, probability, xerr=[[middle - low], [high - middle]], color=INK, marker="o", markersize=4, capsize=3)
@@ -67,7 +67,7 @@ def draw_control(axes, quantity, sample, control):
     axes.scatter(foretold, sample.values, s=10, color=COLORS["regression"], linewidth=0)
     correlation = numpy.corrcoef(foretold, sample.values)[0, 1]
     axes.annotate(f"correlation {correlation:.4f}", (0.04, 0.92), xycoords="axes fraction")
-    axes.set(title="Each run against the linear prediction", xlabel="one run and its derivatives", ylabel=spoken(quantity), aspect="equal")
+    axes.set(title="Each run against the linear prediction", xlabel=f"linear, from the derivatives of {len(control.each)} runs", ylabel=spoken(quantity), aspect="equal")
 
 
 def draw(folder, quantity, sample, marks, found, control):

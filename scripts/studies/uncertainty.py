@@ -6,7 +6,7 @@ import sys
 
 import numpy
 
-from studies import analysis, figure, middle, plan
+from studies import analysis, derived, figure, plan
 from studies.runs_table import QUANTITIES
 from studies.tables import table
 
@@ -18,9 +18,10 @@ LINEAR_POINTS = 2**16
 
 @dataclasses.dataclass
 class Sample:
-    """Parameters, a row of their values (`points`) for each finished run, and the quantity there."""
+    """Parameters, and for each finished run its number, a row of their values (`points`), and the quantity there."""
     said: dict
     parameters: list
+    numbers: list
     points: numpy.ndarray
     values: numpy.ndarray
 
@@ -48,7 +49,7 @@ def read(folder, quantity):
     values = numpy.array([float(row[quantity]) for row in finished])
     if numpy.ptp(values) == 0:
         sys.exit(f"study: {quantity} is {values[0]:g} in every run; there is nothing to share out")
-    return Sample(said, parameters, points, values)
+    return Sample(said, parameters, [int(row["run"]) for row in finished], points, values)
 
 
 def number(value, bar):
@@ -63,10 +64,10 @@ def with_bar(value, bar):
 
 def within(mark):
     """A quantile and its bounds."""
-    middle_, low, high = mark
-    width = min(middle_ - low, high - middle_)
+    middle, low, high = mark
+    width = min(middle - low, high - middle)
     bound = [number(one, width) if numpy.isfinite(one) else "not bounded" for one in (low, high)]
-    return f"{number(middle_, width if numpy.isfinite(width) else 0.01)} ({bound[0]} to {bound[1]})"
+    return f"{number(middle, width if numpy.isfinite(width) else 0.01)} ({bound[0]} to {bound[1]})"
 
 
 def percent(value, bar=None):
@@ -83,12 +84,12 @@ def spread(sample, marks, control):
         drawn = plan.probabilities("sobol", LINEAR_POINTS, 1, len(sample.parameters))
         points = numpy.array([[one.value(p) for one, p in zip(sample.parameters, row)] for row in drawn])
         prediction = control(points)
-        rows.append(["1 run with derivatives", number(prediction.mean(), bar), number(prediction.std(), deviation_bar),
+        rows.append([f"{len(control.each)} with derivatives", number(prediction.mean(), bar), number(prediction.std(), deviation_bar),
                      *(number(numpy.quantile(prediction, p), bar) for p in analysis.PROBABILITIES)])
     table(["from", "mean", "standard deviation", *(f"{100 * p:g} % quantile" for p in analysis.PROBABILITIES)], rows)
 
 
-def shares(sample, slopes):
+def shares(sample, control):
     """Share of the variance by parameter, as {method: [(share, bar)]}; the regression, or None."""
     runs, found, regression = len(sample.values), {}, None
     try:
@@ -99,8 +100,8 @@ def shares(sample, slopes):
         print(f"study: no regression: {error}", file=sys.stderr)
     bars = analysis.deviation_by_resampling(lambda chosen: analysis.bins(sample.points[chosen], sample.values[chosen]), runs)
     found["bins"] = list(zip(analysis.bins(sample.points, sample.values), analysis.WIDTH * bars))
-    if slopes:
-        found["derivatives"] = [(share, None) for share in analysis.linear_shares(sample.parameters, slopes)[0]]
+    if control:
+        found["derivatives"] = [(share, None) for share in analysis.linear_shares(sample.parameters, control.slopes)]
     return found, regression
 
 
@@ -113,40 +114,40 @@ def show_shares(sample, found, regression):
         print(f"Of the variance of runs they have not seen, the polynomials of the regression leave {left:.2g} %.\n")
 
 
-def show_slopes(sample, slopes, regression):
-    """Derivatives in the middle beside the slopes over the whole sample."""
-    heads = ["parameter", "standard deviation", "derivative in the middle"]
-    rows = [[one.name, f"{one.deviation:.4g}", f"{slope:.4g}"] for one, slope in zip(sample.parameters, slopes)]
+def show_slopes(sample, control, regression):
+    """Derivatives of the runs beside the slopes over the whole sample."""
+    runs = len(control.each)
+    heads = ["parameter", "standard deviation", "derivative in the middle", f"median of {runs} runs", "smallest", "largest"]
+    rows = [[one.name, *(f"{value:.4g}" for value in (one.deviation, control.each[0, k], control.slopes[k], control.each[:, k].min(),
+                                                      control.each[:, k].max()))] for k, one in enumerate(sample.parameters)]
     if regression:
-        heads += ["slope over the sample"]
+        heads.append("slope over the sample")
         for row, slope in zip(rows, regression.slopes(sample.parameters)):
             row.append(with_bar(slope[0], analysis.WIDTH * slope[1]))
     table(heads, rows)
 
 
-def show_control(sample, control, mean):
+def show_control(sample, control):
     """What the linear prediction is worth as a control variate of the mean."""
     prediction, values = control(sample.points), sample.values
-    helped, error = analysis.controlled_mean(values, prediction, mean)
+    helped, error = analysis.controlled_mean(values, prediction, control.mean)
     plain = values.std(ddof=1) / len(values)**0.5
     table(["mean", "of the runs", "with the derivatives as control"],
           [["estimate", with_bar(values.mean(), analysis.WIDTH * plain), with_bar(helped, analysis.WIDTH * error)],
-           [f"variance over groups of {GROUP} runs", "1", f"1 / {analysis.gain(values, prediction, mean, GROUP):.3g}"]])
+           [f"variance over groups of {GROUP} runs", "1", f"1 / {analysis.gain(values, prediction, control.mean, GROUP):.3g}"]])
     correlation = numpy.corrcoef(values, prediction)[0, 1]
     print(f"Correlation of runs and linear prediction {correlation:.5f}, largest difference {abs(values - prediction).max():.3g}.\n")
 
 
-def report(folder, quantity):
+def report(folder, quantity, derived_runs):
     """Prints the tables and draws the figure beside runs.csv."""
     sample = read(folder, quantity)
-    derived = middle.derivatives(folder, sample.said, sample.parameters, quantity)
-    value, slopes = derived or (None, None)
-    control = (lambda points: analysis.linear(sample.parameters, points, value, slopes)) if derived else None
+    control = derived.linear(folder, sample, quantity, derived_runs) if derived_runs else None
     marks = analysis.quantiles(sample.values)
-    found, regression = shares(sample, slopes)
+    found, regression = shares(sample, control)
     spread(sample, marks, control)
     show_shares(sample, found, regression)
-    if derived:
-        show_slopes(sample, slopes, regression)
-        show_control(sample, control, value)
+    if control:
+        show_slopes(sample, control, regression)
+        show_control(sample, control)
     print("figure:", figure.draw(folder, quantity, sample, marks, found, control))
