@@ -211,6 +211,18 @@ fn the_table_of_another_study_is_refused_and_left_alone() {
         let sentence = format!("is the table of another study, which differs in: {differs};");
         assert!(said(&ended).contains(&sentence), "{}", said(&ended));
     }
+    let lock = std::fs::File::open(folder.join(".lock")).unwrap();
+    lock.lock().unwrap();
+    let second = study(&format!(
+        "factorial friction_coefficient=0,0.1 {at} -- {TINY}"
+    ));
+    assert!(
+        said(&second).contains("another study is at work in"),
+        "{}",
+        said(&second)
+    );
+    lock.unlock().unwrap();
+    assert_eq!(table(&folder), before);
     let other = study_with(
         &counting(&folder),
         &format!("factorial friction_coefficient=0,0.1 {at} -- {TINY}"),
@@ -284,6 +296,7 @@ fn words_that_make_no_study_are_answered_with_one_sentence() {
             "the deviation 0 has to be above 0",
         ),
         ("sample 1 stroke=1:2", "a sample of 1 runs says nothing"),
+        ("sample 4 stroke=1:2 --seed -1", "--seed -1: take 0 or more"),
     ] {
         let words = words.replace("FOLDER", &folder.join("new").display().to_string());
         let ended = study(&words);

@@ -101,6 +101,8 @@ def sample(kind, runs, seed, words, options):
     checked([one.name for one in parameters], options)
     if runs < 2:
         sys.exit(f"study: a sample of {runs} runs says nothing; take 2 or more")
+    if seed < 0:
+        sys.exit(f"study: --seed {seed}: take 0 or more")
     # Ten digits: the table has exactly what the program got.
     values = [[f"{one.value(p):.10g}" for one, p in zip(parameters, row)] for row in probabilities(kind, runs, seed, len(parameters))]
     said = {"plan": kind, "runs": runs, "seed": seed, "parameters": dict(map(factor, words))}

@@ -5,6 +5,7 @@ the study is killed. Rows stand in the order of the plan, and hold nothing that 
 another: an interrupted study that goes on ends with the table of one that was not.
 """
 import csv
+import fcntl
 import hashlib
 import json
 import os
@@ -27,11 +28,13 @@ class RunsTable:
         self.rows = {}
         said = {**plan.words, "options": plan.options, **fingerprints(plan.options)}
         path = folder / "plan.json"
-        if path.exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        self.lock = only_one(folder)
+        # A plan without a run, perhaps with a wrong word in it, is nothing to keep.
+        if path.exists() and (folder / "runs.csv").exists():
             self.refuse_another(said, json.loads(path.read_text()))
             self.read()
         else:
-            folder.mkdir(parents=True, exist_ok=True)
             replace(path, json.dumps(said, indent=1) + "\n")
 
     def refuse_another(self, said, found):
@@ -41,11 +44,8 @@ class RunsTable:
                      "give this one a folder of its own with --folder, or remove that one")
 
     def read(self):
-        try:
-            with open(self.folder / "runs.csv", newline="") as file:
-                rows = list(csv.DictReader(file))
-        except FileNotFoundError:
-            return
+        with open(self.folder / "runs.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
         for row in rows:
             number = int(row["run"]) if row.get("run", "").isdecimal() else 0
             if not 1 <= number <= len(self.plan.runs) or [row.get(name) for name in self.plan.names] != self.plan.runs[number - 1]:
@@ -74,6 +74,16 @@ class RunsTable:
             file.flush()
             os.fsync(file.fileno())
         path.with_suffix(".new").replace(path)
+
+
+def only_one(folder):
+    """Holds the folder for this study until it ends, however it ends."""
+    lock = open(folder / ".lock", "w")
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        sys.exit(f"study: another study is at work in {folder}; let it end, or give this one a folder of its own with --folder")
+    return lock
 
 
 def replace(path, text):
