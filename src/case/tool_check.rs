@@ -5,7 +5,7 @@ use super::model::Case;
 use super::table;
 use crate::contact::ContactLocation;
 use crate::plane::Vector;
-use crate::text::number;
+use crate::text::{number, shortened};
 use crate::tool::Bend;
 
 /// The gap between the tools is looked for at so many strokes, and at points of the punch apart by this share of the
@@ -14,6 +14,9 @@ const STROKES: usize = 32;
 const SPACING: f64 = 0.05;
 /// At most so many points.
 const MOST_POINTS: f64 = 2e4;
+/// Moving contact points find a rounding whose radius is at least this share of their edge: 0.2 mm on edges of 1 mm was
+/// tried, with 0.06 % of noise in the force.
+const LEAST_OF_EDGE: f64 = 0.2;
 /// A gap less than the thickness by no more than this share is rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -46,39 +49,71 @@ fn reach_between_points(bend: &Bend, spacing: f64) -> f64 {
     }
 }
 
-/// A place that is sharper than the contact points are dense goes through the sheet between them.
-fn check_corners(case: &Case) -> Result<(), CaseError> {
+/// Whether a place that sticks out is felt. One sharper than the contact points are dense goes through the sheet between
+/// them, however hard it is. A moving point finds a rounding wherever it is, but at a sharp corner it has no normal.
+fn is_felt(case: &Case, bend: &Bend) -> bool {
+    let spacing = case.contact_spacing();
+    let moves = case.discretisation.contact_location == ContactLocation::Closest;
+    bend.turn <= 0.0
+        || (moves && bend.radius >= LEAST_OF_EDGE * spacing)
+        || reach_between_points(bend, spacing) <= case.discretisation.penetration_limit
+}
+
+/// The least radius that sticks out and is felt, mm.
+fn least_radius(case: &Case) -> f64 {
+    let spacing = case.contact_spacing();
     let limit = case.discretisation.penetration_limit;
-    // A moving point goes to where its edge is closest, to a corner as well.
-    let spacing = match case.discretisation.contact_location {
-        ContactLocation::Closest => return Ok(()),
-        ContactLocation::Points | ContactLocation::Nodes => case.contact_spacing(),
-    };
+    match case.discretisation.contact_location {
+        ContactLocation::Closest => LEAST_OF_EDGE * spacing,
+        ContactLocation::Points | ContactLocation::Nodes => {
+            spacing * spacing / (8.0 * limit) + 0.5 * limit
+        }
+    }
+}
+
+fn check_corners(case: &Case) -> Result<(), CaseError> {
+    let spacing = case.contact_spacing();
     let files = [
         (table::PUNCH_PROFILE.name, &case.tools.punch_file),
         (table::DIE_PROFILE.name, &case.tools.die_file),
     ];
     for (option, file) in files {
         let Some(file) = file else { continue };
-        let sharp = |bend: &&Bend| bend.turn > 0.0 && reach_between_points(bend, spacing) > limit;
-        let Some(bend) = file.outline.bends().iter().find(sharp) else {
+        let Some(bend) = file
+            .outline
+            .bends()
+            .iter()
+            .find(|bend| !is_felt(case, bend))
+        else {
             continue;
         };
-        let least = spacing * spacing / (8.0 * limit) + 0.5 * limit;
         let what = if bend.radius > 0.0 {
             format!("the radius {} mm is too small", bend.radius)
         } else {
             "the corner sticks out and is sharp".to_owned()
         };
+        // Rounded up, so that what is advised is accepted.
+        let least = (100.0 * least_radius(case)).ceil() / 100.0;
+        let why = match case.discretisation.contact_location {
+            ContactLocation::Closest => format!(
+                "moving contact points follow the tool's normal, and it turns here too sharply for edges of the sheet that are \
+                 {} mm long",
+                number(spacing)
+            ),
+            ContactLocation::Points | ContactLocation::Nodes => format!(
+                "between two contact points, which are {} mm apart, it would get {} mm into the sheet, and -penetration_limit \
+                 is {} mm",
+                number(spacing),
+                number(reach_between_points(bend, spacing)),
+                number(case.discretisation.penetration_limit)
+            ),
+        };
         return Err(CaseError::ToolFile {
             option,
-            path: file.path.clone(),
+            path: shortened(&file.path),
             line: file.line(bend.corner),
             problem: format!(
-                "{what}: between two contact points, which are {spacing:.3} mm apart, it would get {} mm into the sheet, and \
-                 -penetration_limit is {} mm; use a radius of {least:.2} mm or more, or more elements with -sheet_nx",
-                number(reach_between_points(bend, spacing)),
-                number(limit)
+                "{what}: {why}; use a radius of {least} mm or more, or more elements with -sheet_nx"
             ),
         });
     }

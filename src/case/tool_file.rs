@@ -53,8 +53,15 @@ impl ToolFile {
         })?;
         let (lines, corners) = corners(&text).map_err(blame)?;
         let outline = Outline::new(side, &corners).map_err(|error| {
-            let line = error.corner.and_then(|corner| lines.get(corner).copied());
-            blame((line, error.problem))
+            let line = |corner: Option<usize>| lines.get(corner?).copied();
+            let problem = match line(error.crossed) {
+                Some(crossed) => format!(
+                    "{} (the earlier part is that of line {crossed})",
+                    error.problem
+                ),
+                None => error.problem,
+            };
+            blame((line(error.corner), problem))
         })?;
         Ok(Self {
             path: path.to_owned(),
@@ -135,4 +142,59 @@ fn corners(text: &str) -> Result<(Vec<u64>, Vec<Corner>), Refusal> {
         lines.push(line);
     }
     Ok((lines, corners))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::{any, prop, proptest};
+
+    #[test]
+    fn columns_may_stand_in_any_order_and_corners_know_their_lines() {
+        let text = "# a die\nradius_mm, x_mm ,y_mm\n0,0,-29\n\n# its shoulder\n4,25,0\n0,85,0\n";
+        let (lines, corners) = corners(text).unwrap();
+        assert_eq!(lines, [3, 6, 7]);
+        assert_eq!(
+            corners[1],
+            Corner {
+                x: [25.0, 0.0],
+                radius: 4.0
+            }
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn any_text_is_read_or_refused(text in any::<String>()) {
+            let _ = corners(&text);
+            let _ = corners(&format!("{}\n{text}", COLUMNS.join(",")));
+        }
+
+        #[test]
+        fn any_corners_are_an_outline_or_refused(
+            numbers in prop::collection::vec((0.0..30.0, -30.0..30.0, 0.0..3.0), 1..8),
+            rounded in any::<bool>(),
+        ) {
+            let corner = |&(x, y, radius): &(f64, f64, f64)| Corner { x: [x, y], radius: if rounded { radius } else { 0.0 } };
+            let mut corners: Vec<Corner> = numbers.iter().map(corner).collect();
+            corners[0].x[0] = 0.0;
+            if let Some(last) = corners.last_mut() {
+                last.radius = 0.0;
+            }
+            for side in [ToolSide::Below, ToolSide::Above] {
+                if let Ok(outline) = Outline::new(side, &corners) {
+                    // Every point of it is on it, and a sheet that it touches is not in it.
+                    let profile = outline.placed(-outline.first_touch(20.0).y);
+                    for x in profile.polyline(0.5) {
+                        assert!(profile.distance(x).value.abs() < 1e-7, "{corners:?} {x:?}");
+                    }
+                    let up = if side == ToolSide::Below { 1.0 } else { -1.0 };
+                    for k in 0..=40 {
+                        let x = [0.5 * f64::from(k), 1e-3 * up];
+                        assert!(profile.distance(x).value > 0.0, "{side:?} {corners:?} {x:?}");
+                    }
+                }
+            }
+        }
+    }
 }

@@ -3,6 +3,7 @@
 //! Never: the sheet, the contact forces, PETSc or MPI.
 
 mod benchmark;
+mod corners;
 mod crossing;
 mod motion;
 mod outline;

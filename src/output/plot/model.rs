@@ -151,7 +151,13 @@ fn labels(canvas: &Canvas, frame: &Frame, case: &Case, sight: &Sight) -> Result<
         Some(file) => format!("punch, {}", file_name(&file.path)),
         None => format!("punch, radius {} mm", tools.punch_radius),
     };
-    say(0.0, 0.45 * sight.height, punch, INK)?;
+    // A nose is wide enough for its name farther up only.
+    let up = if tools.punch_file.is_some() {
+        0.68
+    } else {
+        0.45
+    };
+    say(0.0, up * sight.height, punch, INK)?;
     match &tools.die_file {
         Some(file) => say(
             beside,
