@@ -177,7 +177,11 @@ fn labels(canvas: &Canvas, frame: &Frame, case: &Case, sight: &Sight) -> Result<
     let deepest = case.sheet.thickness - case.loading.stroke;
     if -deepest > 0.6 * depth {
         let text = "punch at full stroke".to_owned();
-        say(0.0, deepest + 1.6 * above, text, MARK)?;
+        let y = match tools.punch_file {
+            Some(_) => 0.35 * deepest,
+            None => deepest + 1.6 * above,
+        };
+        say(0.0, y, text, MARK)?;
     }
     Ok(())
 }
