@@ -142,8 +142,9 @@ pub(super) fn bends(
     side: ToolSide,
 ) -> Result<Vec<Bend>, OutlineError> {
     let mut bends = Vec::new();
-    for (corner, _) in lines.iter().enumerate() {
-        let (turn, radius) = (turn(lines, corner), corners[corner].radius);
+    // The last corner has no line after it.
+    for (corner, &Corner { radius, .. }) in corners.iter().enumerate().take(lines.len()) {
+        let turn = turn(lines, corner);
         if turn.abs() > PI - BACK {
             return refuse(
                 corner,
@@ -199,8 +200,7 @@ pub(super) fn check_room(corners: &[Corner], lines: &[Line]) -> Result<(), Outli
 pub(super) fn pieces(corners: &[Corner], lines: &[Line]) -> (Vec<Piece>, Vec<usize>) {
     let mut all = Vec::new();
     let mut at = corners[0].x;
-    for corner in 0..corners.len() {
-        let Corner { x, radius } = corners[corner];
+    for (corner, &Corner { x, radius }) in corners.iter().enumerate() {
         let rounded = tangent_length(corners, lines, corner);
         if rounded <= SAME_PLACE {
             if corner > 0 {
