@@ -17,6 +17,8 @@ pub(in crate::run) struct RunState {
     pub options: BTreeMap<String, String>,
     /// Checksum of the hardening curve.
     pub hardening: u32,
+    /// Checksums of the outlines of die and punch.
+    pub tools: [u32; 2],
     /// The program that wrote it.
     pub revision: String,
     /// Time of the step, ms.
@@ -56,6 +58,7 @@ impl RunState {
             .collect();
         to.put_text("options", &options.concat())?;
         to.put("hardening", &[self.hardening])?;
+        to.put("tools", &self.tools)?;
         to.put_text("revision", &self.revision)?;
         to.put("unknowns", &self.unknowns)?;
         let (before, last_dt) = match &self.before {
@@ -102,6 +105,11 @@ impl RunState {
         let [wanted] = from.get_exactly("wanted_dt")?;
         let [calm] = from.get_exactly::<u64, 1>("calm_steps")?;
         let [hardening] = from.get_exactly("hardening")?;
+        // Before there were tools from files there was no other checksum.
+        let tools = match from.has("tools") {
+            true => from.get_exactly("tools")?,
+            false => [0; 2],
+        };
         let [time] = from.get_exactly("time")?;
         let springbacks: Vec<f64> = from.get("springbacks")?;
         Ok(Self {
@@ -111,6 +119,7 @@ impl RunState {
                 .map(|(name, value)| (name.to_owned(), value.to_owned()))
                 .collect(),
             hardening,
+            tools,
             revision: from.get_text("revision")?,
             time,
             unknowns: from.get("unknowns")?,
