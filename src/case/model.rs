@@ -159,8 +159,10 @@ pub struct Discretisation {
     pub nx: usize,
     /// Elements through the thickness.
     pub ny: usize,
-    /// Gauss rule of the elements.
-    pub quadrature: Quadrature,
+    /// Gauss points along the sheet in an element.
+    pub points_along: usize,
+    /// Gauss points through the thickness in an element; none: as many as along the sheet.
+    pub points_through: Option<usize>,
     /// Where contact is looked for.
     pub contact_location: ContactLocation,
     /// Contact points on each element edge of the sheet's surfaces.
@@ -175,6 +177,12 @@ impl Discretisation {
     /// Number of elements of the sheet.
     pub fn elements(&self) -> usize {
         self.nx * self.ny
+    }
+
+    /// Gauss rule of the elements.
+    pub fn quadrature(&self) -> Quadrature {
+        let through = self.points_through.unwrap_or(self.points_along);
+        Quadrature::of(self.points_along, through)
     }
 }
 

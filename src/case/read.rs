@@ -41,7 +41,8 @@ impl Case {
             discretisation: Discretisation {
                 nx: table::SHEET_NX.read(options)?,
                 ny: table::SHEET_NY.read(options)?,
-                quadrature: table::QUADRATURE.read(options)?,
+                points_along: table::QUADRATURE.read(options)?,
+                points_through: table::QUADRATURE_THICKNESS.read(options)?,
                 contact_location: table::CONTACT_LOCATION.read(options)?,
                 contact_points_per_edge: table::CONTACT_POINTS_PER_EDGE.read(options)?,
                 contact_compliance: table::CONTACT_COMPLIANCE.read(options)?,

@@ -16,7 +16,6 @@ use super::option::{Described, Group, Opt};
 use super::sensitivity::Parameters;
 use super::tool_file::ToolFile;
 use crate::contact::ContactLocation;
-use crate::element::Quadrature;
 
 /// The value of -hardening_file that means the table compiled into the program.
 pub(crate) const BENCHMARK_TABLE: &str = "benchmark";
@@ -160,10 +159,26 @@ option_table! {
         meaning: "Elements through the thickness.",
         value: |case| case.discretisation.ny,
     }
-    QUADRATURE: Choice<Quadrature> {
-        name: "quadrature", unit: "", default: "2", group: Group::Discretisation, kind: Choice(&[("2", Quadrature::Reduced), ("3", Quadrature::Full)]),
+    QUADRATURE: Choice<usize> {
+        name: "quadrature", unit: "", default: "2", group: Group::Discretisation, kind: Choice(&[("2", 2), ("3", 3)]),
         meaning: "Gauss points per direction in an element; 2 is reduced integration of the quadratic element.",
-        value: |case| case.discretisation.quadrature,
+        value: |case| case.discretisation.points_along,
+    }
+    QUADRATURE_THICKNESS: Choice<Option<usize>> {
+        name: "quadrature_thickness", unit: "", default: "same", group: Group::Discretisation,
+        kind: Choice(&[
+            ("same", None),
+            ("2", Some(2)),
+            ("3", Some(3)),
+            ("4", Some(4)),
+            ("5", Some(5)),
+            ("7", Some(7)),
+            ("10", Some(10)),
+            ("15", Some(15)),
+        ]),
+        meaning: "Gauss points through the thickness in an element, in place of -quadrature's: more of them see better where the bent \
+                  sheet begins to yield, which decides the angle after release.",
+        value: |case| case.discretisation.points_through,
     }
     CONTACT_LOCATION: Choice<ContactLocation> {
         name: "contact_location", unit: "", default: "points", group: Group::Discretisation,

@@ -120,7 +120,7 @@ impl Problem {
             ),
             young_modulus: case.material.young_modulus,
             density,
-            quadrature: divisions.quadrature,
+            quadrature: divisions.quadrature(),
             contact_rule: ContactRule::new(
                 divisions.contact_location,
                 divisions.contact_points_per_edge,
