@@ -142,12 +142,20 @@ def carry_out(plan, folder, jobs, again, keep):
     signal.signal(signal.SIGTERM, stopped)
     if missing:
         progress.show(len(table.rows), len(table.failed()))
+    adding = threading.Lock()
+
+    def make(number):
+        """A run is in the table before the next one begins, so that a kill costs no more than the runs at work."""
+        found = runs.make(number)
+        with adding:
+            if found:
+                table.add(number, found)
+                progress.show(len(table.rows), len(table.failed()))
+
     pool = concurrent.futures.ThreadPoolExecutor(jobs)
-    waiting = {pool.submit(runs.make, number): number for number in missing}
     try:
-        for future in concurrent.futures.as_completed(waiting):
-            table.add(waiting[future], future.result())
-            progress.show(len(table.rows), len(table.failed()))
+        for future in concurrent.futures.as_completed([pool.submit(make, number) for number in missing]):
+            future.result()
     except (KeyboardInterrupt, OSError) as error:
         runs.stop()
         pool.shutdown(cancel_futures=True)
