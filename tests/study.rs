@@ -211,17 +211,23 @@ fn the_table_of_another_study_is_refused_and_left_alone() {
         let sentence = format!("is the table of another study, which differs in: {differs};");
         assert!(said(&ended).contains(&sentence), "{}", said(&ended));
     }
-    let lock = std::fs::File::open(folder.join(".lock")).unwrap();
-    lock.lock().unwrap();
-    let second = study(&format!(
-        "factorial friction_coefficient=0,0.1 {at} -- {TINY}"
-    ));
+    // As while another study is at work: flock(1) holds the lock.
+    let second = Command::new("flock")
+        .arg(folder.join(".lock"))
+        .args(["python3", "-B", "scripts/study.py", "factorial"])
+        .args(["friction_coefficient=0,0.1", "--folder"])
+        .arg(&folder)
+        .arg("--")
+        .args(TINY.split_whitespace())
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .env("SSNP155", PROGRAM)
+        .output()
+        .unwrap();
     assert!(
         said(&second).contains("another study is at work in"),
         "{}",
         said(&second)
     );
-    lock.unlock().unwrap();
     assert_eq!(table(&folder), before);
     let other = study_with(
         &counting(&folder),
