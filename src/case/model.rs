@@ -1,6 +1,7 @@
 //! The case: the model a person describes, as plain numbers. Units are mm, N, MPa, g and ms.
 
 use super::inverse::Sought;
+use super::tool_file::ToolFile;
 use crate::contact::ContactLocation;
 use crate::element::Quadrature;
 use crate::material::Hardening;
@@ -72,8 +73,9 @@ impl Sheet {
     }
 }
 
-/// The rigid tools. The die's flat is y = 0 for x >= `die_edge`, the shoulder's centre is (`die_edge`, -shoulder radius),
-/// the cavity's centre (0, -shoulder radius); the punch's lowest point is first at (0, thickness).
+/// The rigid tools. Unless they are from files, the die's flat is y = 0 for x >= `die_edge`, the shoulder's centre is
+/// (`die_edge`, -shoulder radius), the cavity's centre (0, -shoulder radius); the punch's lowest point is first at
+/// (0, thickness).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tools {
     /// Radius of the punch, mm.
@@ -82,6 +84,10 @@ pub struct Tools {
     pub die_radius: f64,
     /// Radius of the shoulder, mm.
     pub die_shoulder_radius: f64,
+    /// The punch from a file, in place of the benchmark's.
+    pub punch_file: Option<ToolFile>,
+    /// The die from a file, in place of the benchmark's.
+    pub die_file: Option<ToolFile>,
 }
 
 impl Tools {

@@ -6,10 +6,9 @@ use super::error::CaseError;
 use super::hardening::{constants, has};
 use super::model::{
     Case, Discretisation, Friction, Inverse, Loading, Material, Output, Resuming, Sheet, Stepping,
-    Tools,
 };
 use super::option::{self, OptionSource};
-use super::{geometry, inverse, table};
+use super::{geometry, inverse, table, tools};
 use crate::material::hardening::{Declaration, Hardening, LAWS};
 use crate::text::shortened;
 
@@ -26,11 +25,7 @@ impl Case {
                 thickness: table::SHEET_THICKNESS.read(options)?,
                 width: table::SHEET_WIDTH.read(options)?,
             },
-            tools: Tools {
-                punch_radius: table::PUNCH_RADIUS.read(options)?,
-                die_radius: table::DIE_RADIUS.read(options)?,
-                die_shoulder_radius: table::DIE_SHOULDER_RADIUS.read(options)?,
-            },
+            tools: tools::read(options)?,
             loading: Loading {
                 stroke: table::STROKE.read(options)?,
                 unload_fraction: table::UNLOAD_FRACTION.read(options)?,

@@ -14,10 +14,19 @@ use super::kind_resuming::{Restarting, WallTime};
 use super::model::Dynamics;
 use super::option::{Described, Group, Opt};
 use super::sensitivity::Parameters;
+use super::tool_file::ToolFile;
 use crate::contact::ContactLocation;
 
 /// The value of -hardening_file that means the table compiled into the program.
 pub(crate) const BENCHMARK_TABLE: &str = "benchmark";
+
+/// The value of -punch_profile and -die_profile that means the benchmark's own.
+pub(crate) const BENCHMARK_TOOL: &str = "benchmark";
+
+fn tool_path(file: &Option<ToolFile>) -> String {
+    let path = file.as_ref().map(|file| file.path.clone());
+    path.unwrap_or_else(|| BENCHMARK_TOOL.to_owned())
+}
 
 macro_rules! option_table {
     ($($option:ident: $kind:ty { $($field:tt)* })*) => {
@@ -61,6 +70,17 @@ option_table! {
         name: "die_shoulder_radius", unit: "mm", default: "4", group: Group::Tools, kind: Real::positive(1e5),
         meaning: "Radius of the shoulder between the die's cavity and its flat.",
         value: |case| case.tools.die_shoulder_radius,
+    }
+    PUNCH_PROFILE: Path {
+        name: "punch_profile", unit: "", default: BENCHMARK_TOOL, group: Group::Tools, kind: Path,
+        meaning: "Outline of the punch, a CSV file with the columns x_mm,y_mm,radius_mm (docs/tools.md), in place of -punch_radius; \
+                  the word benchmark means the benchmark's punch.",
+        value: |case| tool_path(&case.tools.punch_file),
+    }
+    DIE_PROFILE: Path {
+        name: "die_profile", unit: "", default: BENCHMARK_TOOL, group: Group::Tools, kind: Path,
+        meaning: "Outline of the die likewise, in place of -die_radius and -die_shoulder_radius.",
+        value: |case| tool_path(&case.tools.die_file),
     }
     STROKE: Real {
         name: "stroke", unit: "mm", default: "28.5", group: Group::Loading, kind: Real::positive(1e5),

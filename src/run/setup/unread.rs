@@ -82,9 +82,8 @@ const fn stepper(dynamics: Dynamics) -> Reserved {
 pub fn refuse_bad_options(case: &Case, comm: &SimpleCommunicator) -> Result<(), RunError> {
     let stepper = stepper(case.loading.dynamics);
     for reserved in RESERVED.iter().chain([&stepper]) {
-        if let Some(given) = petsc::options::get(reserved.option)?
-            && reserved.allowed != Some(&given)
-        {
+        let refused = |given: &String| reserved.allowed != Some(given);
+        if let Some(given) = petsc::options::get(reserved.option)?.filter(refused) {
             return Err(CaseError::Reserved {
                 option: reserved.option,
                 given,
