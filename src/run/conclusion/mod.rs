@@ -55,7 +55,7 @@ pub fn conclude(
     };
     text.push_str(&unread::warnings()?);
     text.push_str(&banner::last_words(case, &summary, &outcome));
-    outcome.recorder.show(&text);
+    outcome.recorder.tell(&text);
     // The page is made from the files of the run, which all ranks must have closed.
     let (folder, records) = outcome.recorder.close();
     if comm.rank() == 0 {
