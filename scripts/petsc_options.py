@@ -23,18 +23,40 @@ PAGE = ROOT / "docs/petsc-options.md"
 # Ten steps and three refused solves: some options matter only where a solve is refused.
 CASE = ("-sheet_nx 40 -sheet_ny 1 -stroke 0.2 -time_load 6.4 -unload_fraction 0 -report_strokes none -output_every 0 -checkpoint_minutes 0 "
         "-dt_initial 4 -dt_min 0.1 -newton_max_iterations 3").split()
-# Set-up: options, ranks.
+# Set-up: options, ranks. In this order, because an option that was seen to work is not tried again.
 SETUPS = {
     "default": ([], 1),
-    "2 ranks": ([], 2),
-    "friction": (["-friction_coefficient", "0.1342"], 1),
-    "statics": (["-dynamics", "none"], 1),
-    "fastest": (["-options_file", str(ROOT / "inputs/fastest.opts")], 1),
     "petsc-lu": (["-pc_type", "lu"], 1),
-    "gmres": (["-pc_type", "lu", "-ksp_type", "gmres"], 1),
+    "gmres": (["-pc_type", "bjacobi", "-sub_pc_type", "lu", "-ksp_type", "gmres"], 1),
+    "fastest": (["-options_file", str(ROOT / "inputs/fastest.opts")], 1),
+    "line search": (["-snes_linesearch_type", "l2"], 1),
+    "statics": (["-dynamics", "none"], 1),
+    "friction": (["-friction_coefficient", "0.1342"], 1),
+    "2 ranks": ([], 2),
+}
+# Values of options whose line in the help does not say enough.
+VALUES = {
+    "ts_adapt_clip": "0.5,1.5",
+    "ts_adapt_wnormtype": "infinity",
+    "ts_adapt_safety": "0.5",
+    "ts_adapt_reject_safety": "0.3",
+    "mat_mumps_icntl_20": "0",
+    "ts_time_span": "0,1",
+    "ts_monitor_frequency": "3",
+    "ts_adapt_scale_solve_failed": "0.2",
+    "snes_vi_zero_tolerance": "1e-3",
+    "snes_divergence_tolerance": "1.5",
+    "snes_convergence_test": "skip",
+    "snes_linesearch_damping": "0.5",
+    "ksp_fischer_guess": "1,10",
+    "ksp_guess_type": "fischer",
+    "pc_type": "none",
+    "pc_factor_mat_solver_type": "petsc",
+    "pc_factor_mat_ordering_type": "rcm",
 }
 NAME = re.compile(r"^\s+-(?P<name>[a-z]\w*)(?P<rest>.*)$")
 FAMILY = re.compile(r"(condensed_|sub_|all_)?(ts|snes|ksp|pc|mat|vec)_")
+PREFIX = re.compile(r"^(condensed_|sub_|redundant_|all_)+")
 NOW = re.compile(r"<(?:now )?(?P<now>[^ >:]*)")
 CHOICES = re.compile(r"\((?:choose )?one of\)? (?P<words>[^()]*)")
 UGLY = ["panicked", "PETSC ERROR", "Caught signal", "Segmentation", "core dumped", "Traceback", "MPI_ABORT"]
@@ -65,25 +87,27 @@ def listed(text):
 
 def other_value(name, rest):
     """A value that an option does not have, by what its line in the help says."""
+    bare = PREFIX.sub("", name)
+    if bare in VALUES:
+        return [VALUES[bare]]
     if re.match(r" (ascii|binary|draw|socket|saws)\[?", rest):
         return []
     choices, now = CHOICES.search(rest), NOW.search(rest)
     if choices:
         words = choices["words"].split()
-        others = [word for word in words if now is None or word.lower() != now["now"].lower()]
-        return others[:1]
+        return [word for word in words if now is None or word.lower() != now["now"].lower()][:1]
     if now is None:
         return []
     value = now["now"]
     if value in ("TRUE", "FALSE"):
         return ["false" if value == "TRUE" else "true"]
+    if re.fullmatch(r"-?\d+", value):
+        return ["3" if value == "2" else "2"]
     try:
         number = float(value)
     except ValueError:
         return ["nothing"]
-    if re.fullmatch(r"-?\d+", value):
-        return [str(int(value) + 1)]
-    return [repr(number / 2) if number else "0.5"]
+    return [repr(number * 1e3 if abs(number) < 1.0 else number / 1e3) if number else "0.5"]
 
 
 def plain(text, folder):
@@ -102,20 +126,109 @@ def outcome(words, ranks, folder):
     return code, rows, plain(text, folder)
 
 
-if __name__ == "__main__":
+class Base:
+    """What a set-up shows without the option: the run, and its solvers as PETSc views them."""
+
+    VIEWS = "-ts_view -snes_view -ksp_view ::ascii_info_detail -condensed_ksp_view ::ascii_info_detail".split()
+
+    def __init__(self, name, folder):
+        words, self.ranks = SETUPS[name]
+        self.words = [*words, *self.VIEWS]
+        self.folder = folder
+        self.code, self.rows, self.said = outcome(self.words, self.ranks, folder)
+        if outcome(self.words, self.ranks, folder)[1:] != (self.rows, self.said):
+            sys.exit(f"set-up {name}: two runs without any option differ, so nothing can be seen")
+
+    def listed(self):
+        return listed(run([*self.words, "-help"], self.ranks, self.folder)[1])
+
+    def tried(self, words):
+        """What the program says becomes of the option, what was seen, and what is wrong with that."""
+        option = words[0]
+        code, rows, said = outcome([*self.words, *words], self.ranks, self.folder)
+        flat = " ".join(said.split())
+        problems = [word for word in UGLY if word in said]
+        if code == 2 and f"ssnp155: option {option}" in flat:
+            return "refused", re.search(rf"ssnp155: option {option}[^:]*: (.*?); leave it out", flat + "; leave it out")[1], problems
+        if code == 2 and "ssnp155: PETSc error" in flat:
+            return "refused", "by PETSc: " + re.search(r"PETSc error \d+: (.*?); if a value", flat)[1], problems
+        if code not in (0, 1):
+            return "works", f"code {code}", [*problems, f"code {code}: {flat[-200:]}"]
+        if f"option {option} is not known" in flat:
+            problems.append("it has no row in src/run/setup/known.rs")
+        silent = re.search(rf"option {option} has no effect,? ?(.*?)(?= (warning|note): | done left)", flat)
+        if silent:
+            if rows != self.rows:
+                problems.append("it is said to have no effect, and the results change")
+            return "no effect", silent[1], problems
+        rare = re.search(rf"option {option} matters only where (.*?)(?= (warning|note): | done left)", flat)
+        if rows != self.rows:
+            return "works", "results", problems
+        if rare:
+            return "works", "only where " + rare[1], problems
+        return "works", "text" if said != self.said else "", problems
+
+
+def main():
+    chosen = sys.argv[1] if len(sys.argv) > 1 else ""
     work = pathlib.Path(tempfile.mkdtemp(prefix="ssnp155-petsc-options-"))
-    folder = work / "results"
-    only = sys.argv[1]
-    words, ranks = SETUPS[only]
-    code, text = run([*words, "-help"], ranks, folder)
-    options = listed(text)
-    base = outcome(words, ranks, folder)
-    print(len(options), base[0], base[2][-300:])
-    for name, rest in options.items():
-        value = other_value(name, rest)
-        code, rows, said = outcome([*words, f"-{name}", *value], ranks, folder)
-        what = "RESULTS" if rows != base[1] else "text" if said != base[2] else "same"
-        ugly = [u for u in UGLY if u in said]
-        new = [l for l in said.splitlines() if l not in base[2]][:1] if what != "same" else []
-        last = [l for l in said.splitlines() if l.startswith("ssnp155:")]
-        print(code, what, f"-{name} {' '.join(value)}", "UGLY" + str(ugly) if ugly else "", (last or new)[:1], flush=True)
+    found, wrong = {}, 0
+    for setup in SETUPS:
+        base = Base(setup, work / "results")
+        for name, rest in base.listed().items():
+            seen = found.setdefault(name, {})
+            if chosen not in name or any(fate == "refused" or fate == "works" and what for fate, what in seen.values()):
+                continue
+            words = [f"-{name}", *other_value(name, rest)]
+            fate, what, problems = base.tried(words)
+            if "2 ranks" == setup and seen and not problems and fate == "no effect":
+                continue
+            seen[setup] = (fate, what)
+            wrong += bool(problems)
+            print(f"{'WRONG' if problems else 'good '} {setup:12} {' '.join(words):50} {fate}: {what} {'; '.join(problems)}", flush=True)
+    for name, seen in found.items():
+        if seen and all(fate == "works" and not what for fate, what in seen.values()):
+            wrong += 1
+            print(f"WRONG -{name} is said to work, and nothing was seen to change")
+    print(f"{len(found)} options, {wrong} not as they have to be")
+    if not chosen and not wrong:
+        write_page(found)
+    return 1 if wrong else 0
+
+
+SEEN = {"results": "other results", "text": "other text, of its own or in PETSc's view of the solvers"}
+
+
+def write_page(found):
+    groups = collections.OrderedDict()
+    for name, seen in found.items():
+        refused = next((what for fate, what in seen.values() if fate == "refused"), None)
+        works = next(((setup, what) for setup, (fate, what) in seen.items() if fate == "works"), None)
+        silent = collections.OrderedDict((what, None) for fate, what in seen.values() if fate == "no effect")
+        if refused:
+            cells = "refused", refused
+        elif works:
+            setup, what = works
+            with_ = "" if setup == "default" else f" with {setup}"
+            cells = "works" + (", else no effect" if silent else ""), "; ".join([SEEN.get(what, what) + with_, *silent])
+        else:
+            cells = "no effect", "; ".join(silent)
+        groups.setdefault(cells, []).append(name)
+    version = subprocess.run([PROGRAM, "-version"], capture_output=True, text=True).stdout
+    version = re.search(r"Release Version ([\d.]+)", version)
+    text = ("# PETSc's options\n\n<!-- Written by scripts/petsc_options.py; changes by hand are lost. -->\n\n"
+            f"Every option that PETSc{' ' + version[1] if version else ''} lists with `-help` for the time stepper, the nonlinear and the linear solvers, the\n"
+            "preconditioners and matrices of a run, and what becomes of it. `scripts/petsc_options.py` gave each another value in a short run and\n"
+            "looked at what changed; the program says the same at the start of a run. With `cargo test` a test fails where `-help` lists an option\n"
+            "that has no row in `src/run/setup/known.rs`. An option of another version of PETSc that is not here is named by a note at the start.\n\n"
+            "Set-ups: " + ", ".join(f"{name} (`{' '.join(words).replace(str(ROOT) + '/', '')}`)" if words else name for name, (words, _) in SETUPS.items()) + ".\n")
+    for fate in ["works", "works, else no effect", "no effect", "refused"]:
+        rows = [(what, names) for (which, what), names in groups.items() if which == fate]
+        if rows:
+            text += f"\n## {fate[0].upper()}{fate[1:]}\n\n| options | {'seen' if fate.startswith('works') else 'why'} |\n|---|---|\n"
+            text += "".join(f"| {' '.join(f'`-{name}`' for name in names)} | {what} |\n" for what, names in rows)
+    PAGE.write_text(text)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -29,6 +29,7 @@ const PETSC_NAMES: &[&str] = &[
     "ao_",
     "log_",
     "sub_",
+    "all_ksp_",
     condensed_option!(""),
     "options_",
     "viewer_",

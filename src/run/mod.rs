@@ -89,6 +89,7 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     let motion = case.loading.motion();
     let landmarks = landmarks(case)?;
     let system = Rc::new(System::new(problem, comm.duplicate())?);
+    blas::find_room(comm)?;
     let unknowns = system.unknown_count();
     let history = match &resumed {
         Some(resumed) => resumed.history(&system)?,
@@ -98,7 +99,7 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     recorder.show(&replaced);
     recorder.show(&blas::report(comm));
     recorder.tell(&linear::report(comm)?);
-    recorder.tell(&given::report()?);
+    recorder.tell(&given::report(case)?);
     let simulation = Rc::new(Simulation::new(
         case, system, history, recorder, landmarks, stop_watch, spent,
     )?);

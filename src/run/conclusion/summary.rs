@@ -40,7 +40,7 @@ pub(super) fn summarise(
         let pair = |angle: &NamedAngle| (angle.name.clone(), value(angle));
         angles.iter().map(pair).collect()
     };
-    let petsc_options = given::by_the_user()?;
+    let petsc_options = given::by_the_user(case)?;
     Ok(Summary {
         status,
         reason,

@@ -3,9 +3,9 @@
 use petsc::options;
 
 use super::doubtful::{self, value};
-use super::known::{Fate, While, fate};
+use super::known::{Fate, Refusal, While, fate};
 use super::{defaults, linear};
-use crate::case::{CaseError, condensed_option as condensed, is_own};
+use crate::case::{Case, CaseError, condensed_option as condensed, is_own};
 use crate::run::error::RunError;
 
 /// Families of PETSc's options whose effect on a run is known; the others (logging, viewers, PETSc itself) change no result.
@@ -63,11 +63,14 @@ fn of_petsc() -> petsc::Result<Vec<(String, String)>> {
 }
 
 /// PETSc's options that have not the value that is set here where the user gives none.
-pub(in crate::run) fn by_the_user() -> petsc::Result<Vec<(String, String)>> {
+pub(in crate::run) fn by_the_user(case: &Case) -> petsc::Result<Vec<(String, String)>> {
     let mut given = of_petsc()?;
     given.retain(|(name, value)| {
+        let set_here = defaults::of_case(case)
+            .iter()
+            .any(|(ours, set)| ours == name && set == value);
         let value = Some(value.as_str());
-        !defaults::is_default(name, value) && !linear::is_default(name, value)
+        !set_here && !defaults::is_default(name, value) && !linear::is_default(name, value)
     });
     Ok(given)
 }
@@ -78,10 +81,12 @@ pub(in crate::run) fn by_the_user() -> petsc::Result<Vec<(String, String)>> {
 /// Which one, why, and what to do.
 pub(super) fn refuse() -> Result<(), RunError> {
     for (option, given) in of_petsc()? {
-        if let Some(Fate::Refused(refusal)) = fate(&option)
-            && refusal.allowed != Some(&given)
-            && !is_off(&given)
-        {
+        let refusal = match fate(&option) {
+            Some(Fate::Refused(refusal)) => refusal,
+            Some(Fate::Drawn) if !has_display() => NO_DISPLAY,
+            _ => continue,
+        };
+        if refusal.allowed != Some(&given) && !is_off(&given) {
             return Err(CaseError::Reserved {
                 option,
                 given,
@@ -95,23 +100,39 @@ pub(super) fn refuse() -> Result<(), RunError> {
     Ok(())
 }
 
+const NO_DISPLAY: Refusal = Refusal {
+    allowed: None,
+    reason: "it draws on a display, and DISPLAY names none",
+    instead: "look at report.html",
+};
+
+fn has_display() -> bool {
+    std::env::var_os("DISPLAY").is_some_and(|display| !display.is_empty())
+}
+
 fn is_off(value: &str) -> bool {
     matches!(value.to_ascii_lowercase().as_str(), "false" | "no" | "off")
 }
 
 /// A line for each option that is known to do harm, to have no effect, or that is not known, at the start of a run.
-pub(in crate::run) fn report() -> petsc::Result<String> {
+pub(in crate::run) fn report(case: &Case) -> petsc::Result<String> {
     let mut text = String::new();
     for (option, effect) in doubtful::given()? {
         text.push_str(&format!("warning: option {option}: {effect}\n"));
     }
-    for (option, _) in by_the_user()? {
+    for (option, _) in by_the_user(case)? {
         let said = match fate(&option) {
             None => Some((
                 "note",
                 "is not known to this program: look whether it does what you want".to_owned(),
             )),
             Some(Fate::NoEffect(why)) => Some(("warning", format!("has no effect, {why}"))),
+            Some(Fate::Unless(While::OtherPackage, _)) if holds(While::OwnSolve, &option)? => {
+                Some((
+                    "warning",
+                    format!("has no effect {}", in_words(While::OwnSolve, "", &option)),
+                ))
+            }
             Some(Fate::Unless(while_, why)) => holds(while_, &option)?.then(|| {
                 (
                     "warning",
@@ -119,7 +140,7 @@ pub(in crate::run) fn report() -> petsc::Result<String> {
                 )
             }),
             Some(Fate::Rare(what)) => Some(("note", format!("matters only where {what}"))),
-            Some(Fate::Works | Fate::Refused(_)) => None,
+            Some(Fate::Works | Fate::Drawn | Fate::Refused(_)) => None,
         };
         if let Some((kind, said)) = said {
             text.push_str(&format!("{kind}: option -{option} {said}\n"));
@@ -151,9 +172,21 @@ fn holds(while_: While, option: &str) -> petsc::Result<bool> {
             }
         },
         While::OwnLineSearch => value("snes_linesearch_type")?.is_none(),
-        While::NoDisplay => std::env::var_os("DISPLAY").is_none_or(|display| display.is_empty()),
+        While::OtherPackage => other_package(option)?,
         While::Without(other) => value(other)?.is_none(),
     })
+}
+
+/// Whether the solver with this option leaves the factorisation to another package, MUMPS by default.
+fn other_package(option: &str) -> petsc::Result<bool> {
+    let solver = option.split("pc_factor_").next().unwrap_or_default();
+    let (of, _) = SolveOf::split(option);
+    let exact = value(&format!("{solver}pc_type"))?
+        .is_none_or(|method| matches!(method.as_str(), "lu" | "cholesky"));
+    match value(&format!("{solver}pc_factor_mat_solver_type"))? {
+        Some(package) => Ok(package != "petsc"),
+        None => Ok(exact && of != SolveOf::Inner && petsc::has_external_package("mumps")?),
+    }
 }
 
 fn is_direct(option: &str) -> petsc::Result<bool> {
@@ -164,7 +197,7 @@ fn is_direct(option: &str) -> petsc::Result<bool> {
 /// test that lists them.
 pub fn fate_of_petsc_option(name: &str) -> Option<&'static str> {
     Some(match fate(name)? {
-        Fate::Works => "works",
+        Fate::Works | Fate::Drawn => "works",
         Fate::Rare(_) => "works, rarely",
         Fate::NoEffect(_) => "no effect",
         Fate::Unless(..) => "works, by the solver",

@@ -16,6 +16,8 @@ pub(super) enum Fate {
     NoEffect(&'static str),
     /// As [`Fate::NoEffect`] while this holds; it works otherwise.
     Unless(While, &'static str),
+    /// It draws on a display, and is refused where there is none.
+    Drawn,
     /// It is not the user's to choose.
     Refused(Refusal),
 }
@@ -29,8 +31,8 @@ pub(super) enum While {
     OwnSolve,
     /// The line search is the program's own.
     OwnLineSearch,
-    /// There is no screen to draw on.
-    NoDisplay,
+    /// Another package than PETSc factorises.
+    OtherPackage,
     /// Another option is not given.
     Without(&'static str),
 }
@@ -77,9 +79,13 @@ const PYTHON: Fate = refused(
     "it needs Python's petsc4py within the program",
     "read history.csv with Python",
 );
+const NO_EXACT_SOLUTION: Fate = refused(
+    "there is no exact solution to compare with",
+    "use -ksp_monitor_true_residual",
+);
 const EIGENVALUES: Fate = refused(
     "the rows that are solved for change with the contacts, so there is no one matrix whose values it could show",
-    "use -ksp_view_singularvalues with -pc_type lu",
+    "use -ksp_monitor_singular_value with -pc_type lu -ksp_type gmres",
 );
 
 const NO_ERROR_ESTIMATE: Fate =
@@ -95,7 +101,6 @@ const OF_LINE_SEARCH: Fate = Fate::Unless(
     While::OwnLineSearch,
     "on the program's own line search; with -snes_linesearch_type basic PETSc's reads it",
 );
-const DRAWN: Fate = Fate::Unless(While::NoDisplay, "as there is no display to draw on");
 const NO_COLOURS: Fate = Fate::NoEffect("as the time stepper has the tangent from the program");
 const NO_DIFFERENCES: Fate = refused(
     "differences cannot follow the contacts, whose state jumps",
@@ -143,6 +148,7 @@ pub(super) const KNOWN: &[(&[&str], Fate)] = &[
             "ts_monitor_lg_dmda_ray",
             "ts_monitor_solution_vtk*",
             "ts_monitor_envelope",
+            "ts_monitor_draw_solution_phase",
         ],
         NO_GRID,
     ),
@@ -195,7 +201,7 @@ pub(super) const KNOWN: &[(&[&str], Fate)] = &[
         &["ts_exact_final_time"],
         Fate::NoEffect("as the program's steps end at the end of the motion"),
     ),
-    (&["ts_monitor_lg_*", "ts_monitor_draw_*"], DRAWN),
+    (&["ts_monitor_lg_*", "ts_monitor_draw_*"], Fate::Drawn),
     (
         &["ts_monitor_frequency"],
         Fate::Unless(While::Without("ts_monitor"), "without -ts_monitor"),
@@ -285,7 +291,7 @@ pub(super) const KNOWN: &[(&[&str], Fate)] = &[
         Fate::NoEffect("on the solver of the variational inequality, which has no solver within"),
     ),
     (&["snes_ksp_ew"], DIRECT),
-    (&["snes_ksp_ew_*", "snes_ksp_ew*"], EISENSTAT),
+    (&["snes_ksp_ew_*"], EISENSTAT),
     (
         &["snes_monitor_pause_final", "ksp_monitor_pause_final"],
         Fate::Rare("a monitor draws"),
@@ -296,7 +302,7 @@ pub(super) const KNOWN: &[(&[&str], Fate)] = &[
             "snes_vi_monitor_residual",
             "ksp_monitor_lg_*",
         ],
-        DRAWN,
+        Fate::Drawn,
     ),
     (&["snes_linesearch_type"], Fate::Works),
     (&["snes_linesearch_*"], OF_LINE_SEARCH),
@@ -318,29 +324,184 @@ pub(super) const KNOWN: &[(&[&str], Fate)] = &[
         ],
         Fate::Works,
     ),
-    // Linear solver and preconditioner.
-    (&["ksp_type"], Fate::Works),
+    // Linear solver.
+    (&["ksp_monitor_error"], NO_EXACT_SOLUTION),
+    (
+        &["ksp_initial_guess_nonzero"],
+        refused(
+            "each linear solve begins at zero",
+            "use -extrapolate for the first guess of a step",
+        ),
+    ),
+    (
+        &["ksp_diagonal_scale*", "ksp_view_diagonal_scale"],
+        refused(
+            "it writes into the matrix, which the program fills anew for each solve",
+            "scale within MUMPS with -condensed_mat_mumps_icntl_8",
+        ),
+    ),
+    (
+        &["ksp_constant_null_space"],
+        refused(
+            "the matrix has no null space",
+            "fix nothing that the tools hold",
+        ),
+    ),
     (
         &[
+            "ksp_view_mat_explicit",
+            "ksp_view_preconditioned_operator_explicit",
+        ],
+        refused(
+            "it applies the solver to every unit vector in every solve",
+            "use -ksp_view_mat with -pc_type lu",
+        ),
+    ),
+    (&["ksp_plot_*", "ksp_gmres_krylov_monitor"], Fate::Drawn),
+    (&["ksp_reuse_preconditioner"], OWN_SOLVE),
+    (
+        &["ksp_matsolve_batch_size", "ksp_use_explicittranspose"],
+        Fate::NoEffect("as there is one right-hand side at a time, and no transposed system"),
+    ),
+    (
+        &[
+            "ksp_view_eigenvalues*",
+            "ksp_view_singularvalues",
+            "ksp_compute_*",
+            "ksp_converged_rate",
+            "ksp_converged_use_*",
+            "ksp_converged_maxits",
+            "ksp_converged_neg_curve",
+            "ksp_max_it",
+            "ksp_min_it",
+            "ksp_rtol",
+            "ksp_atol",
+            "ksp_divtol",
+            "ksp_knoll",
+            "ksp_guess_*",
+            "ksp_fischer_guess*",
+            "ksp_convergence_test",
+            "ksp_norm_type",
+            "ksp_check_norm_iteration",
+            "ksp_lag_norm",
+            "ksp_pc_side",
+            "ksp_nestedness*",
+            "ksp_dynamic_tolerance",
+            "ksp_gmres_*",
+            "ksp_fgmres_*",
+            "ksp_lgmres_*",
+            "ksp_dgmres_*",
+            "ksp_pgmres_*",
+            "ksp_bcgsl_*",
+            "ksp_qmrcgs_*",
+            "ksp_idr_*",
+            "ksp_gcr_*",
+            "ksp_richardson_*",
+            "ksp_chebyshev_*",
+        ],
+        DIRECT,
+    ),
+    (
+        &[
+            "ksp_type",
             "ksp_monitor*",
             "all_ksp_monitor*",
-            "ksp_view*",
+            "ksp_view",
+            "ksp_view_pre",
+            "ksp_view_mat",
+            "ksp_view_pmat",
+            "ksp_view_rhs",
+            "ksp_view_solution",
+            "ksp_view_final_residual",
+            "ksp_final_residual",
             "ksp_converged_reason*",
-            "ksp_converged_rate*",
+            "ksp_error_if_not_converged",
         ],
         Fate::Works,
     ),
-    (&["ksp_*"], DIRECT),
+    // Preconditioner and factorisation.
+    (&["pc_type", "pc_factor_mat_solver_type"], OWN_SOLVE),
+    (
+        &["pc_factor_in_place"],
+        refused(
+            "the matrix is filled anew for each solve, so its factors cannot stand in its place",
+            "save memory with -condensed_mat_mumps_icntl_22 1",
+        ),
+    ),
+    (&["pc_use_amat"], Fate::NoEffect("as there is one matrix")),
+    (
+        &["pc_factor_pivot_in_blocks"],
+        Fate::NoEffect("as the matrix has no blocks"),
+    ),
     (
         &[
-            "pc_*",
+            "pc_factor_fill",
+            "pc_factor_shift_type",
+            "pc_factor_shift_amount",
+            "pc_factor_shift_in_blocks",
+            "pc_factor_shift_nonzero",
+            "pc_factor_shift_positive_definite",
+            "pc_factor_zeropivot",
+            "pc_factor_column_pivot",
+            "pc_factor_reuse_fill",
+            "pc_factor_reuse_ordering",
+            "pc_factor_mat_ordering_type",
+            "pc_factor_levels",
+            "pc_factor_diagonal_fill",
+            "pc_factor_nonzeros_along_diagonal",
+            "pc_factor_mat_factor_on_host",
+            "pc_factor_mat_solve_on_host",
+        ],
+        Fate::Unless(
+            While::OtherPackage,
+            "on a factorisation by another package than PETSc's own (-pc_factor_mat_solver_type petsc)",
+        ),
+    ),
+    (
+        &[
+            "mat_mumps_icntl_19",
+            "mat_mumps_icntl_25",
+            "mat_mumps_icntl_26",
+            "mat_mumps_icntl_31",
+        ],
+        refused(
+            "with it MUMPS solves something else than the system",
+            "see what MUMPS does with -condensed_mat_mumps_icntl_4 2",
+        ),
+    ),
+    (
+        &[
+            "pc_asm_*",
+            "pc_bjacobi_*",
+            "pc_gasm_*",
+            "pc_jacobi_*",
+            "pc_sor_*",
+            "pc_redundant_*",
+            "pc_svd_*",
+            "pc_composite_*",
+            "pc_view*",
             "mat_mumps_*",
             "mat_superlu*",
             "mat_umfpack_*",
-            "sub_*",
-            "redundant_*",
+            "mat_strumpack_*",
+            "mat_mkl_*",
+            "mat_cholmod_*",
+            "mat_pastix_*",
         ],
         OWN_SOLVE,
+    ),
+    (
+        &[
+            "mat_view*",
+            "mat_factor_view",
+            "mat_no_unroll",
+            "mat_no_inode",
+            "mat_inode_limit",
+            "mat_seqaij_type",
+            "mat_mpiaij_type",
+            "mat_type",
+        ],
+        Fate::Works,
     ),
 ];
 

@@ -75,7 +75,7 @@ function charts_() {
 }
 
 function verdictTable() {
-  const key = v => `${v.quantity} (${v.comparison}: ${v.source})`, rows = new Map();
+  const key = v => `${v.quantity} (${v.comparison}: ${v.source}, ${v.reference})`, rows = new Map();
   runs.forEach((run, k) => run.summary.verdicts.forEach(v => { const row = rows.get(key(v)) || { v, both: [null, null] }; row.both[k] = v; rows.set(key(v), row); }));
   table("verdict-table", [{ name: "Compared with" }, { name: "Quantity" }, { name: "A", number: true }, { name: "" }, { name: "B", number: true }, { name: "" }, { name: "Value", number: true }, { name: "Tolerance", number: true }, { name: "Unit" }],
     [...rows.values()].map(({ v, both }) => ({

@@ -80,10 +80,10 @@ function makeCharts() {
   new Chart("steps", { title: "Step size", xLabel: "travel of the punch, mm", yLabel: "step, ms", log: true, height: 270, turn: turnTravel, xRange: travelRange, tip: tip("ms"),
     series: [{ name: "step", color: OURS, width: 1.8, x: travels, y: dt, time: times }, marks(dt)], at: (t, row) => ({ x: travel(t), y: row >= 0 ? dt[row] : NaN }) });
   const total = refused.reduce((a, b) => a + b, 0), open = summary.counts.refused_solves - total;
-  document.getElementById("steps-caption").textContent = `Red: steps that were accepted after ${total} refused solves altogether.${open > 0 ? ` ${open} more solves were refused where the run ended.` : ""}`;
+  document.getElementById("steps-caption").textContent = total + open === 0 ? "No solve was refused." : `Red: steps that were accepted after ${total} refused solves altogether.${open > 0 ? ` ${open} more solves were refused where the run ended.` : ""}`;
   new Chart("newton", { title: "Newton iterations", xLabel: "travel of the punch, mm", yLabel: "iterations of the step", height: 270, turn: turnTravel, xRange: travelRange, tip: tip("iterations"),
     series: [{ name: "iterations", color: OURS, kind: "stems", x: travels, y: newton, time: times }, marks(newton)], at: (t, row) => ({ x: travel(t), y: row >= 0 ? newton[row] : NaN }) });
-  pressureChart = new Chart("pressure", { title: "Contact pressure along the sheet", xLabel: "place along the undeformed sheet from its middle, mm", yLabel: "pressure, MPa", height: 250, xRange: [0, model.half_length], series: [],
+  pressureChart = new Chart("pressure", { title: "Contact pressure along the sheet", xLabel: "place along the sheet from its middle, mm", yLabel: "pressure, MPa", height: 250, xRange: [0, model.half_length], series: [],
     tip: (s, i) => `${fixed(s.x[i], 3)} mm: ${fixed(Math.abs(s.y[i]), 1)} MPa`, yTick: v => show(Math.abs(v)) });
 }
 

@@ -172,7 +172,7 @@ function drawSheet(printing) {
 }
 
 function colorBar(printing) {
-  const canvas = document.getElementById("scale"), { c, width } = prepare(canvas, 44, printing ? 700 : 0), f = states.fields[look.field];
+  const canvas = document.getElementById("scale"), { c, width } = prepare(canvas, 50, printing ? 700 : 0), f = states.fields[look.field];
   const left = 2, right = Math.min(width - 2, 560), X = v => left + v / f.top * (right - left);
   for (let k = 0; k < 256; k++) { c.fillStyle = COLORS[k]; c.fillRect(left + k / 256 * (right - left), 0, (right - left) / 256 + 0.7, 13); }
   c.fillStyle = tone("soft"); c.strokeStyle = tone("faint"); c.font = "12px sans-serif"; c.textAlign = "center";
@@ -180,5 +180,5 @@ function colorBar(printing) {
   c.textAlign = "left"; c.fillStyle = tone("ink"); c.font = "13px sans-serif";
   let most = 0; for (let n = 0; n < states.nodes; n++) most = Math.max(most, valueAt(look.state, n));
   if (width > right + 250) c.fillText(`${f.name}${f.unit ? `, ${f.unit}` : ""}; here at most ${show(most, 3)}`, right + 16, 11);
-  else c.fillText(`${f.name}${f.unit ? `, ${f.unit}` : ""}; here at most ${show(most, 3)}`, left, 43);
+  else c.fillText(`${f.name}${f.unit ? `, ${f.unit}` : ""}; here at most ${show(most, 3)}`, left, 46);
 }

@@ -77,18 +77,21 @@ function header() {
 
 function failure() {
   const box = document.getElementById("failure"), d = summary.diagnosis;
-  const list = (items, kind = "ul") => { const made = element(kind); items.forEach(text => made.append(element("li", { text }))); return made; };
+  const list = (items, kind = "ul") => { const made = element(kind); items.forEach(text => made.append(element("li", {}, sentence(text)))); return made; };
   if (summary.status !== "finished") {
+    const paused = summary.status === "interrupted";
     box.hidden = false;
-    box.append(element("h2", { text: "The run did not finish" }));
+    if (paused) box.className = "paused";
+    box.append(element("h2", { text: paused ? "The run was asked to end, and can go on" : "The run did not finish" }));
     if (d) {
       const dl = element("dl", { style: "margin:0" }), add = (name, ...what) => dl.append(element("dt", { text: name }), element("dd", {}, ...what));
-      add("Where", d.place); add("Why", d.cause);
+      add("Where", d.place); add("Why", sentence(d.cause));
       if (d.observed.length) add("What was seen", list(d.observed));
       if (d.tried.length) add("What was tried", list(d.tried));
       if (d.remedies.length) add("What you can do", list(d.remedies, "ol"));
       box.append(dl);
-    } else box.append(element("p", { text: summary.reason || "No reason is known." }));
+    } else box.append(element("p", {}, sentence(summary.reason || "No reason is known.")));
+    if (paused) box.append(element("p", {}, sentence("It goes on with the same options and -restart.")));
     box.append(element("p", { class: "small", text: "Everything below is valid up to the last accepted step." }));
   }
   if (summary.notes && summary.notes.length) {

@@ -23,6 +23,13 @@ function ticks(low, high, wanted) {
   return list;
 }
 
+// A text in which the name of an option is not broken between two lines.
+function sentence(text) {
+  const made = document.createDocumentFragment();
+  text.split(/(-[a-z]\w+)/).forEach((part, i) => made.append(i % 2 ? element("span", { class: "option" }, part) : part));
+  return made;
+}
+
 function element(name, attributes = {}, ...children) {
   const made = document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) key === "text" ? made.textContent = value : made.setAttribute(key, value);
