@@ -104,7 +104,7 @@ fn hidden_friction_and_strength_are_found_again_on_one_rank_and_on_two() {
             assert!(results.join(name).exists(), "{name}");
         }
         // The runs keep to their logs.
-        assert!(!ended.stdout.contains("Newton"), "{}", ended.stdout);
+        assert!(!ended.says("Newton"), "{}", ended.stdout);
         let values = found["parameters"].as_array().unwrap().iter();
         let near = |one: &serde_json::Value| {
             [
@@ -135,14 +135,12 @@ fn what_the_curve_cannot_tell_is_said() {
     assert_eq!(found["parameters"][0]["identified"], true);
     assert_eq!(found["parameters"][1]["identified"], false);
     assert!(
-        ended.stdout.contains("not determined: "),
+        ended.says("not determined: "),
         "{}",
         ended.stdout
     );
     assert!(
-        ended
-            .stdout
-            .contains("FINISHED, but not every verdict holds")
+        ended.says("FINISHED, but not every verdict holds")
     );
 }
 
@@ -163,9 +161,7 @@ fn a_start_that_cannot_be_run_and_runs_that_are_used_up_are_said() {
     let ended = program(1, &folder.join("short"), &format!("{search} -most_runs 1"));
     assert_eq!(ended.code, Some(1), "{}", ended.text());
     assert!(
-        ended
-            .stdout
-            .contains("the runs that -most_runs allows are used up")
+        ended.says("the runs that -most_runs allows are used up")
     );
 }
 
@@ -198,7 +194,7 @@ fn an_angle_out_of_reach_gets_the_nearest_one() {
     assert_eq!(found["found"], "out_of_reach");
     assert_eq!(found["best"]["values"][0].as_f64(), Some(17.5));
     assert!(
-        ended.stdout.contains("cannot be reached within the bounds"),
+        ended.says("cannot be reached within the bounds"),
         "{}",
         ended.stdout
     );

@@ -267,7 +267,11 @@ pub(super) const KNOWN: &[(&[&str], Fate)] = &[
         &["snes_max_linear_solve_fail"],
         Fate::Rare("a linear solve fails"),
     ),
-    (&["snes_force_iteration", "snes_max_funcs"], Fate::Works),
+    (
+        &["snes_force_iteration"],
+        Fate::Rare("the first guess of a solve is good enough already"),
+    ),
+    (&["snes_max_funcs"], Fate::Works),
     (
         &["snes_check_jacobian_domain_error"],
         Fate::NoEffect("as the tangent exists wherever the residual does"),
@@ -468,6 +472,10 @@ pub(super) const KNOWN: &[(&[&str], Fate)] = &[
             "with it MUMPS solves something else than the system",
             "see what MUMPS does with -condensed_mat_mumps_icntl_4 2",
         ),
+    ),
+    (
+        &["mat_mumps_ooc_tmpdir"],
+        Fate::Rare("MUMPS keeps its factors on the disk (ICNTL(22) = 1)"),
     ),
     (
         &[
