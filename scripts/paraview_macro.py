@@ -13,6 +13,7 @@ from paraview import simple
 
 # Distance between the tools and what is drawn of them beside the sheet, mm, and the size of a contact point.
 MARGIN, POINT = 4.0, 0.5
+INK = [0.1, 0.13, 0.17]
 SHEET, TOOLS, CONTACT = "fields.vtkhdf", "tools.vtkhdf", "contact.vtkhdf"
 
 
@@ -52,6 +53,7 @@ def show(folder):
     view.UseColorPaletteForBackground = 0
     view.Background = [1.0, 1.0, 1.0]
     view.OrientationAxesVisibility = 0
+    view.ViewSize = [1600, 1000]
 
     sheet = opened(folder, SHEET)
     shown = simple.Show(sheet, view)
@@ -61,8 +63,8 @@ def show(folder):
     time = deepest(sheet.Input)
 
     tools = simple.Show(opened(folder, TOOLS), view)
-    simple.ColorBy(tools, None)
-    tools.AmbientColor = tools.DiffuseColor = [0.35, 0.4, 0.45]
+    tools.ColorArrayName = ["POINTS", ""]
+    tools.AmbientColor = tools.DiffuseColor = INK
     tools.LineWidth = 2.0
 
     closed = simple.Threshold(registrationName="points in contact", Input=opened(folder, CONTACT))
@@ -77,12 +79,15 @@ def show(folder):
 
     view.ViewTime = time
     simple.GetAnimationScene().AnimationTime = time
-    for shown_, name in [(shown, "equivalent plastic strain"), (marked, "contact pressure, MPa")]:
-        shown_.RescaleTransferFunctionToDataRange(False, True)
-        shown_.SetScalarBarVisibility(view, True)
-        bar = simple.GetScalarBar(shown_.LookupTable, view)
+    for coloured, name, place in [(shown, "equivalent plastic strain", 0.05), (marked, "contact pressure, MPa", 0.55)]:
+        coloured.RescaleTransferFunctionToDataRange(False, True)
+        coloured.SetScalarBarVisibility(view, True)
+        bar = simple.GetScalarBar(coloured.LookupTable, view)
         bar.Title, bar.ComponentTitle = name, ""
-        bar.TitleColor = bar.LabelColor = [0.1, 0.13, 0.17]
+        bar.TitleColor = bar.LabelColor = INK
+        bar.TitleFontSize, bar.LabelFontSize = 14, 12
+        bar.Orientation, bar.WindowLocation = "Horizontal", "Any Location"
+        bar.Position, bar.ScalarBarLength = [place, 0.03], 0.35
     frame(view, sheet)
     return view, time
 

@@ -212,6 +212,8 @@ def write_page(found):
         refused = next((what for fate, what in seen.values() if fate == "refused"), None)
         works = next(((setup, what) for setup, (fate, what) in seen.items() if fate == "works"), None)
         silent = collections.OrderedDict((what, None) for fate, what in seen.values() if fate == "no effect")
+        if not seen:
+            continue
         if refused:
             cells = "refused", refused
         elif works:
@@ -221,8 +223,7 @@ def write_page(found):
         else:
             cells = "no effect", "; ".join(silent)
         groups.setdefault(cells, []).append(name)
-    version = subprocess.run([PROGRAM, "-version"], capture_output=True, text=True).stdout
-    version = re.search(r"Release Version ([\d.]+)", version)
+    version = re.search(r"Release Version ([\d.]+)", subprocess.run([PROGRAM, "-version", "-help"], capture_output=True, text=True).stdout)
     text = ("# PETSc's options\n\n<!-- Written by scripts/petsc_options.py; changes by hand are lost. -->\n\n"
             f"Every option that PETSc{' ' + version[1] if version else ''} lists with `-help` for the time stepper, the nonlinear and the linear solvers, the\n"
             "preconditioners and matrices of a run, and what becomes of it. `scripts/petsc_options.py` gave each another value in a short run and\n"
@@ -234,6 +235,9 @@ def write_page(found):
         if rows:
             text += f"\n## {fate[0].upper()}{fate[1:]}\n\n| options | {'seen' if fate.startswith('works') else 'why'} |\n|---|---|\n"
             text += "".join(f"| {' '.join(f'`-{name}`' for name in names)} | {what} |\n" for what, names in rows)
+    untried = [f"`-{name}`" for name, seen in found.items() if not seen]
+    if untried:
+        text += "\n## Listed, and not tried yet\n\n" + " ".join(untried) + "\n"
     PAGE.write_text(text)
 
 

@@ -176,9 +176,7 @@ fn a_run_that_a_limit_ends_early_does_not_look_finished() {
     let ended = small(1, "bad-input-limit", "-ts_max_steps 1");
     assert_eq!(ended.code, Some(1), "{}", ended.text());
     assert!(ended.says("FAILED: the run did not finish"));
-    assert!(
-        ended.says("the prescribed number of steps is done")
-    );
+    assert!(ended.says("the prescribed number of steps is done"));
     assert!(!ended.says("FINISHED"));
 }
 

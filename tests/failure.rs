@@ -178,10 +178,6 @@ fn a_punch_that_passes_between_the_points_is_reported() {
             "{note}"
         );
         // Such a run may reach the end or not; the note stands in either banner.
-        assert!(
-            ended.says("  note     A tool"),
-            "{}",
-            ended.stdout
-        );
+        assert!(ended.says("  note     A tool"), "{}", ended.stdout);
     }
 }

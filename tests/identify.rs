@@ -134,14 +134,8 @@ fn what_the_curve_cannot_tell_is_said() {
     let found = json(&folder.join("results/identification.json"));
     assert_eq!(found["parameters"][0]["identified"], true);
     assert_eq!(found["parameters"][1]["identified"], false);
-    assert!(
-        ended.says("not determined: "),
-        "{}",
-        ended.stdout
-    );
-    assert!(
-        ended.says("FINISHED, but not every verdict holds")
-    );
+    assert!(ended.says("not determined: "), "{}", ended.stdout);
+    assert!(ended.says("FINISHED, but not every verdict holds"));
 }
 
 #[test]
@@ -160,9 +154,7 @@ fn a_start_that_cannot_be_run_and_runs_that_are_used_up_are_said() {
     assert_eq!(ended.stderr.matches("ssnp155: ").count(), 1);
     let ended = program(1, &folder.join("short"), &format!("{search} -most_runs 1"));
     assert_eq!(ended.code, Some(1), "{}", ended.text());
-    assert!(
-        ended.says("the runs that -most_runs allows are used up")
-    );
+    assert!(ended.says("the runs that -most_runs allows are used up"));
 }
 
 const DESIGN: &str = "-design 100 -stroke 17 -time_load 537 -design_refinement 1";

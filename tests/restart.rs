@@ -43,11 +43,7 @@ fn same(name: &str, ranks: usize, parts: &[&str]) {
     first_part(&broken, ranks, parts, steps / 2);
     let ended = start(&broken, ranks, &[parts, &["-restart"]].concat());
     assert_eq!(ended.code, whole.code, "{name}: {}", ended.text());
-    assert!(
-        ended.says("resumed from"),
-        "{name}: {}",
-        ended.text()
-    );
+    assert!(ended.says("resumed from"), "{name}: {}", ended.text());
     assert_eq!(rows(&broken), rows(&unbroken), "{name}");
     let (expected, found) = (fields(&unbroken), fields(&broken));
     assert!(
@@ -252,9 +248,7 @@ fn a_signal_ends_a_run_that_goes_on_later() {
         ended.text(),
         began.elapsed()
     );
-    assert!(
-        ended.says("the time that -wall_limit allows is nearly used up")
-    );
+    assert!(ended.says("the time that -wall_limit allows is nearly used up"));
     assert_eq!(start(&stopped, 1, &[LONGER, "-restart"]).code, Some(0));
     assert_eq!(rows(&stopped), rows(&unbroken));
 }

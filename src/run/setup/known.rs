@@ -499,9 +499,15 @@ pub(super) const KNOWN: &[(&[&str], Fate)] = &[
         OWN_SOLVE,
     ),
     (
+        &["mat_factor_view"],
+        refused(
+            "PETSc cannot show factors by themselves",
+            "use -condensed_ksp_view ::ascii_info_detail",
+        ),
+    ),
+    (
         &[
             "mat_view*",
-            "mat_factor_view",
             "mat_no_unroll",
             "mat_no_inode",
             "mat_inode_limit",
