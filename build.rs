@@ -6,9 +6,8 @@ fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     // Only what is there: a file that is missing would mean a new build each time.
     for name in ["HEAD", "refs"] {
-        if let Some(path) = git(&["rev-parse", "--git-path", name])
-            && Path::new(&path).exists()
-        {
+        let path = git(&["rev-parse", "--git-path", name]);
+        if let Some(path) = path.filter(|path| Path::new(path).exists()) {
             println!("cargo:rerun-if-changed={path}");
         }
     }

@@ -6,7 +6,8 @@
 OPTIONS go to the program as they are. Beside the run they describe its companions are made, each different in one thing:
 
   coarse     half the elements in each direction, twice the contact points per edge
-  gauss      3 x 3 instead of 2 x 2 Gauss points (left out if the run has 3 x 3)
+  gauss      3 x 3 instead of 2 x 2 Gauss points (left out if the run has 3 x 3); with -quadrature_thickness about twice as many
+             through the thickness (left out if that is more than there are)
   spacing    twice the contact points per edge (left out above 12 points, and where contact is not at points)
   steps      steps of twice the length
   scatter-N  steps of 17/18, 16/18 and 15/18 of the length
@@ -34,6 +35,8 @@ RESULTS = pathlib.Path(os.environ.get("ERROR_BARS", ROOT / "results-error-bars")
 ORDER = 3
 SCATTER = [17 / 18, 16 / 18, 15 / 18]
 MOST_POINTS_PER_EDGE = 24
+# About twice the points through an element that -quadrature_thickness offers.
+MORE_THROUGH = {"2": "4", "3": "5", "4": "7", "5": "10", "7": "15"}
 QUANTITIES = {"force_N": "force N", "dy_A_sheet_mm": "DY of A mm", "angle_deg": "angle deg"}
 ANGLE = "angle deg"
 PARTS = ["mesh", "integration", "spacing", "steps", "scatter"]
@@ -78,8 +81,11 @@ def companions(options):
         sys.exit(f"error_bars: a mesh of {nx} x {ny} elements has no half; take at least 2 x 2")
     twice = str(min(2 * points, MOST_POINTS_PER_EDGE))
     found = {"coarse": [*mesh((nx + 1) // 2, (ny + 1) // 2), "-contact_points_per_edge", twice]}
-    if options["quadrature"] == "2":
+    through = options["quadrature_thickness"]
+    if through == "same" and options["quadrature"] == "2":
         found["gauss"] = ["-quadrature", "3"]
+    if through in MORE_THROUGH:
+        found["gauss"] = ["-quadrature_thickness", MORE_THROUGH[through]]
     if options["contact_location"] == "points" and 2 * points <= MOST_POINTS_PER_EDGE:
         found["spacing"] = ["-contact_points_per_edge", twice]
     found["steps"] = scaled_steps(options, 2)

@@ -4,165 +4,108 @@
   scripts/study.py sweep NAME VALUE,VALUE,... [OPTION ...]   one option, any values
   scripts/study.py convergence [OPTION ...]                  meshes and step sizes, both friction cases
   scripts/study.py sensitivity [OPTION ...]                  angle after release against the data, +-5 %
+  scripts/study.py factorial NAME=VALUE,VALUE,... ... [CAMPAIGN] [-- OPTION ...]
+                                                             all combinations of the values
+  scripts/study.py sample RUNS NAME=LOW:HIGH NAME=normal:MEAN:DEVIATION ... [--plan lhs|sobol|random] [--seed 1] [CAMPAIGN] [-- OPTION ...]
+                                                             values by chance: a Latin hypercube, scrambled Sobol' points, or independent
+  scripts/study.py analyse FOLDER [QUANTITY] [--derivatives RUNS]
+                                                             of a sample: quantiles of a column, withdrawn_deg if none is given, and the
+                                                             parameters its variance comes from, with a figure; RUNS (5) more runs carry
+                                                             derivatives, 0 for none
 
-Tables are Markdown on standard output. Options given last go to every run. The program is
-target/release/ssnp155, or $SSNP155. Results of single runs stay in results-study/; with REUSE=1 a run that
-is there is not made again.
+The punch is withdrawn in all of them unless an OPTION says otherwise. Tables are Markdown on standard output; options given
+last go to every run. The program is target/release/ssnp155, or $SSNP155.
+
+The first three: results of single runs stay in results-study/, or $STUDY; with REUSE=1 a run that is there is not made again.
+
+CAMPAIGN of factorial and sample:
+  --folder FOLDER  where runs.csv (a row for each run) and plan.json are; results-study/factorial or sample, if not given
+  --jobs N         runs side by side, each on one rank; 1 if not given
+  --again          make failed runs once more
+  --keep           keep the folders of all runs, not those of failed ones only
+
+A run that is in the table is not made again: the same command goes on after an interruption. A table of another plan, of
+other options, or of another program is refused. A failed run is a row with its reason, and then the study ends with code 1.
+docs/studies.md has an example.
 """
-import csv
-import json
-import os
+import argparse
 import pathlib
-import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
-PROGRAM = os.environ.get("SSNP155", str(ROOT / "target/release/ssnp155"))
-FRICTION = "0.1342"
-WITHDRAWN = ["-unload_fraction", "1", "-time_unload", "1000"]
+from studies import campaign, plan, tables
+from studies.program import RESULTS
 
 
-def run(name, options):
-    """The summary and the history of one run."""
-    folder = ROOT / "results-study" / name
-    command = [PROGRAM, *options, "-output_dir", str(folder), "-output_every", "0"]
-    if not (os.environ.get("REUSE") and (folder / "summary.json").exists()):
-        print("run:", " ".join(options), file=sys.stderr, flush=True)
-        subprocess.run(command, stdout=subprocess.PIPE, check=False)
+class Words(argparse.ArgumentParser):
+    """One sentence for words that make no sense."""
+
+    def error(self, message):
+        sys.exit(f"study: {message}; scripts/study.py --help says what there is")
+
+
+def words_of_campaign(command):
+    words = Words(prog=f"study.py {command}", add_help=False)
+    if command == "sample":
+        words.add_argument("runs", type=int)
+        words.add_argument("--plan", choices=["lhs", "sobol", "random"], default="lhs")
+        words.add_argument("--seed", type=int, default=1)
+    words.add_argument("parameters", nargs="+")
+    words.add_argument("--folder", type=pathlib.Path, default=RESULTS / command)
+    words.add_argument("--jobs", type=int, default=1)
+    words.add_argument("--again", action="store_true")
+    words.add_argument("--keep", action="store_true")
+    return words
+
+
+def run_plan(command, arguments):
+    """Makes what is missing of a factorial or a sample, and shows it."""
+    end = arguments.index("--") if "--" in arguments else len(arguments)
+    given = words_of_campaign(command).parse_intermixed_args(arguments[:end])
+    options = arguments[end + 1:]
+    if given.jobs < 1:
+        sys.exit(f"study: --jobs {given.jobs}: take 1 or more")
+    if command == "factorial":
+        planned = plan.factorial(given.parameters, options)
+    else:
+        planned = plan.sample(given.plan, given.runs, given.seed, given.parameters, options)
+    table = campaign.carry_out(planned, given.folder, given.jobs, given.again, given.keep)
+    if command == "factorial":
+        rows = [table.rows[number] for number in sorted(table.rows)]
+        columns = [column for column in table.columns if any(row[column] for row in rows)]
+        tables.table(columns, [[tables.rounded(row[column]) for column in columns] for row in rows])
+    print(f"{given.folder}/runs.csv has the {len(table.rows)} runs")
+    for number in table.failed():
+        print(f"study: run {number} failed: {table.rows[number]['reason']}", file=sys.stderr)
+    sys.exit(1 if table.failed() else 0)
+
+
+def analyse(arguments):
+    words = Words(prog="study.py analyse", add_help=False)
+    words.add_argument("folder", type=pathlib.Path)
+    words.add_argument("quantity", nargs="?", default="withdrawn_deg")
+    words.add_argument("--derivatives", type=int, default=5)
+    given = words.parse_intermixed_args(arguments)
     try:
-        summary = json.loads((folder / "summary.json").read_text())
-    except OSError:
-        sys.exit(f"study: no summary from {' '.join(command)}")
-    if summary["status"] != "finished":
-        print("study: not finished:", summary["reason"], file=sys.stderr)
-    with open(folder / "history.csv") as rows:
-        history = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(rows)]
-    return summary, history
-
-
-def quantities(summary, history):
-    """What the tables show; None where a run did not get there."""
-    angles = summary["angles_deg"]
-    loading = [row for row in history if row["t_ms"] <= 900.0 + 1e-6]
-
-    def force(depth):
-        found = [row["force_N"] for row in loading if abs(row["stroke_mm"] - depth) < 1e-6]
-        return found[0] if found else None
-
-    deepest = max((name for name in angles if name.startswith("tools vanish")),
-                  key=lambda name: float(name.split()[-2]), default=None)
-    return {
-        "F(5) N": force(5.0),
-        "F(10) N": force(10.0),
-        "F(20) N": force(20.0),
-        "F max, d < 25 N": max((row["force_N"] for row in loading if row["stroke_mm"] < 25.0), default=None),
-        "loaded deg": angles.get("full stroke"),
-        "withdrawn deg": angles.get("end of the motion") if summary["status"] == "finished" else None,
-        "tools vanish deg": angles.get(deepest),
-        "steps": summary["counts"]["steps"],
-        "refused": summary["counts"]["refused_solves"],
-        "iterations": summary["counts"]["newton_iterations"],
-    }
-
-
-def show(value):
-    if value is None:
-        return "-"
-    return f"{value:.2f}" if isinstance(value, float) else str(value)
-
-
-def table(heads, rows):
-    print("| " + " | ".join(heads) + " |")
-    print("|" + "---|" * len(heads))
-    for row in rows:
-        print("| " + " | ".join(show(value) for value in row) + " |", flush=True)
-    print()
-
-
-def sweep(name, values, extra):
-    rows = []
-    for value in values:
-        found = quantities(*run(f"{name}-{value}", [f"-{name}", value, *WITHDRAWN, *extra]))
-        rows.append([value, *found.values()])
-    table([name, *found], rows)
-
-
-def convergence(extra):
-    """Three meshes with the default step, three steps on the default mesh."""
-    meshes, steps = [(85, 3), (170, 5), (340, 10)], ["9", "4.5", "2.25"]
-    for friction in ["0", FRICTION]:
-        found = {}
-        for nx, ny, largest in [(*mesh, "9") for mesh in meshes] + [(170, 5, step) for step in steps[1:]]:
-            options = ["-friction_coefficient", friction, "-sheet_nx", str(nx), "-sheet_ny", str(ny)]
-            options += ["-dt_max", largest, *WITHDRAWN, *extra]
-            found[nx, largest] = quantities(*run(f"convergence-{friction}-{nx}-{largest}", options))
-        print(f"Coefficient of friction {friction}:\n")
-        heads = ["mesh", "dt_max ms", *found[170, "9"]]
-        names = {nx: f"{nx} x {ny}" for nx, ny in meshes}
-        table(heads, [[names[nx], largest, *values.values()] for (nx, largest), values in found.items()])
-        rows = []
-        for quantity in list(found[170, "9"])[:7]:
-            by_mesh = [found[nx, "9"][quantity] for nx, _ in meshes]
-            by_step = [found[170, step][quantity] for step in steps]
-            if None in by_mesh + by_step:
-                continue
-            # Second order in the mesh, first in the step; the error is what the last refinement of each still changed.
-            mesh, step = by_mesh[2] - by_mesh[1], by_step[2] - by_step[1]
-            rows.append([quantity, by_mesh[2] + mesh / 3.0 + (by_step[2] - by_step[0]) + step,
-                         abs(mesh) + abs(step), mesh, step])
-        table(["quantity", "extrapolated", "error estimate", "170 to 340 changes it by",
-               "the last halving of the step by"], rows)
-
-
-def sensitivity(extra):
-    data = ["sheet_thickness", "die_shoulder_radius", "friction_coefficient", "yield stress"]
-    for friction in ["0", FRICTION]:
-        base = ["-friction_coefficient", friction, *WITHDRAWN, *extra]
-        middle = quantities(*run(f"sensitivity-{friction}", base))
-        rows = [["none", "", "", *list(middle.values())[4:7]]]
-        defaults = {"sheet_thickness": 1.0, "die_shoulder_radius": 4.0, "friction_coefficient": float(friction)}
-        for name in data:
-            if name == "friction_coefficient" and friction == "0":
-                continue
-            for sign in [-1, 1]:
-                factor = 1 + 0.05 * sign
-                if name == "yield stress":
-                    changed = ["-hardening_file", str(scaled_hardening(factor))]
-                    value = f"x {factor:.2f}"
-                else:
-                    value = f"{defaults[name] * factor:.5g}"
-                    changed = [f"-{name}", value]
-                found = quantities(*run(f"sensitivity-{friction}-{name.replace(' ', '-')}-{sign}", base + changed))
-                rows.append([name, value, found["withdrawn deg"] - middle["withdrawn deg"]
-                             if found["withdrawn deg"] is not None else None, *list(found.values())[4:7]])
-        print(f"Coefficient of friction {friction}:\n")
-        table(["changed", "to", "change of the withdrawn angle", *list(middle)[4:7]], rows)
-
-
-def scaled_hardening(factor):
-    """The benchmark's table with all stresses times the factor, at the same plastic strains."""
-    lines = [line for line in (ROOT / "inputs/reference/hardening.csv").read_text().splitlines()
-             if line and not line.startswith("#")][1:]
-    path = ROOT / "results-study" / f"hardening-{factor:.2f}.csv"
-    path.parent.mkdir(exist_ok=True)
-    with open(path, "w") as out:
-        out.write("strain,stress\n")
-        for line in lines:
-            strain, stress = map(float, line.split(","))
-            plastic = max(strain - stress / 70500.0, 0.0)
-            plastic = 0.0 if plastic < 1e-6 else plastic
-            out.write(f"{plastic + factor * stress / 70500.0:.12e},{factor * stress:.12e}\n")
-    return path
+        from studies import uncertainty
+    except ImportError as error:
+        sys.exit(plan.missing(error, "an analysis"))
+    uncertainty.report(given.folder, given.quantity, max(0, given.derivatives))
 
 
 def main(arguments):
     match arguments:
+        case ["-h" | "--help", *_]:
+            print(__doc__.strip())
         case ["sweep", name, values, *extra]:
-            sweep(name.lstrip("-"), values.split(","), extra)
+            tables.sweep(name.lstrip("-"), values.split(","), extra)
         case ["convergence", *extra]:
-            convergence(extra)
+            tables.convergence(extra)
         case ["sensitivity", *extra]:
-            sensitivity(extra)
+            tables.sensitivity(extra)
+        case ["factorial" | "sample" as command, *rest]:
+            run_plan(command, rest)
+        case ["analyse", *rest]:
+            analyse(rest)
         case _:
             sys.exit(__doc__)
 

@@ -3,7 +3,10 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-bash scripts/install.sh python3 python3-venv chromium chromium-driver
+# What checks formatting and lints is in packages of its own where Rust is Debian's.
+rust=$(command -v cargo || echo /usr/bin/cargo)
+[ "$rust" = /usr/bin/cargo ] && lints=(rustfmt rust-clippy) || lints=()
+bash scripts/install.sh python3 python3-venv chromium chromium-driver "${lints[@]}"
 source scripts/environment.sh
 
 echo "test: formatting, lints, documentation"
@@ -16,7 +19,7 @@ bash scripts/run.sh
 
 echo "test: the fields, read back by VTK"
 [ -x .venv/bin/python ] || python3 -m venv .venv
-.venv/bin/python -c 'import selenium, vtk' 2>/dev/null || .venv/bin/pip install --quiet --requirement scripts/requirements.txt
+.venv/bin/python -c 'import matplotlib, scipy, selenium, vtk' 2>/dev/null || .venv/bin/pip install --quiet --requirement scripts/requirements.txt
 .venv/bin/python scripts/read_fields.py results
 
 echo "test: the report in a browser, of this run, of one that fails, of one that is interrupted, and of two side by side"
@@ -29,6 +32,9 @@ echo "test: the report in a browser, of this run, of one that fails, of one that
 .venv/bin/python scripts/check_report.py results/interrupted
 "${CARGO_TARGET_DIR:-target}/release/ssnp155" -compare results,results/failed -output_dir results/compared >/dev/null
 .venv/bin/python scripts/check_report.py results/compared
+
+echo "test: samples of studies, against closed values"
+.venv/bin/python -B scripts/check_studies.py results/check-studies
 
 echo "test: cargo test"
 cargo test --workspace --release --locked

@@ -39,6 +39,13 @@ pub fn gather_lists<T: Equivalence + Clone + Default>(
     all
 }
 
+/// The rows of a list that was flat on its way; what is left over at its end is dropped.
+pub fn rows<T: Copy, const N: usize>(flat: &[T]) -> Vec<[T; N]> {
+    flat.chunks_exact(N)
+        .filter_map(|row| row.try_into().ok())
+        .collect()
+}
+
 /// The sums of these numbers over the ranks. Collective.
 pub fn sums<T: Equivalence + Default + Copy, const N: usize>(
     comm: &impl Communicator,

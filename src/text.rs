@@ -31,6 +31,14 @@ pub(crate) fn read(path: &Path) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|_| "it is not UTF-8 text".to_owned())
 }
 
+/// The line of a row of a table with comments that begin with #: its position is before the empty lines and comments above it.
+pub(crate) fn line_of(text: &str, position: &csv::Position) -> u64 {
+    let first = position.line();
+    let before = text.lines().skip(first.saturating_sub(1) as usize);
+    let skipped = |line: &&str| line.trim().is_empty() || line.starts_with('#');
+    first + before.take_while(skipped).count() as u64
+}
+
 /// The beginning of a text that may be anything, on one line.
 pub(crate) fn shortened(text: &str) -> String {
     const MOST: usize = 60;
@@ -94,6 +102,15 @@ pub(crate) fn fitted(text: &str) -> String {
         }
     }
     fits
+}
+
+/// A number of bytes for people.
+pub(crate) fn size(bytes: u64) -> String {
+    match bytes {
+        0..10_000_000 => format!("{} kB", bytes.div_ceil(1000)),
+        10_000_000..10_000_000_000 => format!("{:.1} MB", bytes as f64 / 1e6),
+        _ => format!("{:.1} GB", bytes as f64 / 1e9),
+    }
 }
 
 /// Shortest text that reads back as the same number, with an exponent where that is easier to read: a value as a person

@@ -9,7 +9,7 @@ use std::ffi::OsString;
 use std::os::unix::ffi::OsStringExt;
 use std::path::Path;
 
-use bad_input_table::{FILES, Given, MISTAKES, Mistake, inverse};
+use bad_input_table::{FILES, Given, MISTAKES, Mistake, inverse, tools};
 use program::{Ended, run, run_in, scratch};
 
 /// Longest time an answer may take, s.
@@ -19,7 +19,7 @@ const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/bad-input.md");
 /// A folder with everything the table's inputs point to.
 fn prepared() -> std::path::PathBuf {
     let folder = scratch("bad-input");
-    for (name, content) in FILES.iter().chain(inverse::FILES) {
+    for (name, content) in FILES.iter().chain(inverse::FILES).chain(tools::FILES) {
         std::fs::write(folder.join(name), content).unwrap();
     }
     for name in ["folder", "taken/summary.json"] {
@@ -56,7 +56,11 @@ fn every_mistake_of_the_table_gets_its_sentence_and_touches_nothing() {
     let folder = prepared();
     let before = listing(&folder);
     let mut wrong = Vec::new();
-    for mistake in MISTAKES.iter().chain(inverse::MISTAKES) {
+    for mistake in MISTAKES
+        .iter()
+        .chain(inverse::MISTAKES)
+        .chain(tools::MISTAKES)
+    {
         for &ranks in mistake.ranks {
             let ended = answer(mistake, ranks, &folder);
             let text = ended.text();
@@ -87,7 +91,11 @@ fn the_page_is_rendered_from_the_table() {
          and, where the third\ncolumn says so, on more.\n\n\
          | what is wrong | given | ranks | answer |\n|---|---|---|---|\n",
     );
-    for mistake in MISTAKES.iter().chain(inverse::MISTAKES) {
+    for mistake in MISTAKES
+        .iter()
+        .chain(inverse::MISTAKES)
+        .chain(tools::MISTAKES)
+    {
         let given = match mistake.given {
             Given::Words(words) => format!("`{words}`"),
             Given::Environment(value) => format!("`PETSC_OPTIONS='{value}'`"),
@@ -103,7 +111,7 @@ fn the_page_is_rendered_from_the_table() {
         );
     }
     page += "\nThe files:\n\n";
-    for (name, content) in FILES.iter().chain(inverse::FILES) {
+    for (name, content) in FILES.iter().chain(inverse::FILES).chain(tools::FILES) {
         page += &format!("- `{name}`: `{}`\n", content.escape_ascii());
     }
     page += "- `long.csv`: one byte more than 1 MiB; `pipe`: a named pipe; `folder`: a folder; `taken`: a folder with a folder \

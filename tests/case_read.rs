@@ -59,7 +59,7 @@ fn without_options_it_is_the_frictionless_benchmark() {
         (
             case.discretisation.nx,
             case.discretisation.ny,
-            case.discretisation.quadrature
+            case.discretisation.quadrature()
         ),
         (170, 5, ssnp155::element::Quadrature::Reduced)
     );
@@ -139,6 +139,7 @@ fn what_is_shown_reads_back_as_the_same_case() {
         ("sheet_nx", "171"),
         ("sheet_ny", "6"),
         ("quadrature", "3"),
+        ("quadrature_thickness", "7"),
         ("contact_location", "nodes"),
         ("contact_points_per_edge", "7"),
         ("contact_compliance", "6e-5"),
@@ -302,6 +303,8 @@ fn whole_numbers_words_and_flags_are_what_they_are() {
     assert!(
         refusal(&[("quadrature", "4")]).contains("specify one of the words: 2 or 3 (default 2)")
     );
+    // One point through the thickness of an element would not resist bending.
+    assert!(refusal(&[("quadrature_thickness", "1")]).contains("none of the choices"));
     assert!(refusal(&[("extrapolate", "maybe")]).contains("neither true nor false"));
     for (text, on) in [
         ("", true),

@@ -66,7 +66,10 @@ fn options_that_loosen_what_is_solved_never_end_with_every_verdict_holding() {
         ("atol-less", "-snes_atol 1e-6"),
         ("rtol", "-snes_rtol 1e-2"),
         ("own", "-newton_tolerance 1e-6"),
-        ("skip", "-snes_convergence_test skip -newton_max_iterations 2"),
+        (
+            "skip",
+            "-snes_convergence_test skip -newton_max_iterations 2",
+        ),
         ("iterations", "-snes_max_it 1"),
         ("search", "-snes_linesearch_type bt"),
     ] {

@@ -147,9 +147,30 @@ impl Drop for SmallDisk {
     }
 }
 
+/// What is said of a full disk. A collective write that meets one has other words, if any.
+const ADVICE: &str =
+    "; make room and go on with -restart, or choose another folder with -output_dir";
+
+#[test]
+fn a_disk_too_small_to_begin_on_is_refused() {
+    let Some(disk) = SmallDisk::mount(scratch("faults-small"), "256k") else {
+        println!("SKIPPED: a small file system cannot be mounted here (only root may)");
+        return;
+    };
+    for ranks in [1, 2] {
+        let folder = disk.0.join(ranks.to_string());
+        let ended = run(ranks, 120, &words(&folder, ""));
+        assert_eq!(ended.code, Some(2), "{ranks} ranks: {}", ended.text());
+        let told = ended.stderr.lines().filter(|line| line.contains(ADVICE));
+        assert_eq!(told.count(), 1, "{}", ended.stderr);
+        assert_eq!(rows(&folder), "");
+        std::fs::remove_dir_all(folder).unwrap();
+    }
+}
+
 #[test]
 fn a_full_disk_is_an_error_that_leaves_what_was_there() {
-    for (size, checkpoint) in [("1600k", true), ("2600k", false)] {
+    for (size, checkpoint) in [("1800k", true), ("2600k", false)] {
         let Some(disk) = SmallDisk::mount(scratch("faults-disk"), size) else {
             println!("SKIPPED: a small file system cannot be mounted here (only root may)");
             return;
@@ -175,6 +196,7 @@ fn a_full_disk_is_an_error_that_leaves_what_was_there() {
             let last: Vec<&str> = last.collect();
             assert_eq!(last.len(), 1, "{}", ended.stderr);
             assert!(last[0].contains(folder.to_str().unwrap()), "{}", last[0]);
+            assert!(last[0].contains(ADVICE), "{}", last[0]);
             assert!(!ended.says("FINISHED"), "{}", ended.stdout);
             assert!(!folder.join("summary.json").exists());
             let found = checkpoints(&folder);

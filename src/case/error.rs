@@ -132,6 +132,35 @@ pub enum CaseError {
         /// Name of the law in use.
         law: &'static str,
     },
+    /// The outline of a tool is refused.
+    #[error("option -{option} {path}{}: {problem}", line.map(|line| format!(", line {line}")).unwrap_or_default())]
+    ToolFile {
+        /// Name without the dash.
+        option: &'static str,
+        /// The path as given.
+        path: String,
+        /// Line of the file from 1, if one is to blame.
+        line: Option<u64>,
+        /// What is wrong, and what to do.
+        problem: String,
+    },
+    /// Tools from files that cannot work with each other or with the sheet.
+    #[error("the tools do not work together: {0}")]
+    Tools(String),
+    /// A size of the benchmark's tools where a file has taken their place.
+    #[error(
+        "option -{option} {given} has no effect: -{owner} {path} takes its place; leave one of the two out"
+    )]
+    ToolReplaced {
+        /// Name without the dash.
+        option: &'static str,
+        /// The value that was given.
+        given: String,
+        /// The option with the file.
+        owner: &'static str,
+        /// The file.
+        path: String,
+    },
     /// A parameter by which this case has no derivative.
     #[error("option -sensitivity {name}: {reason}")]
     NoDerivative {

@@ -2,9 +2,13 @@
 
 use super::error::CaseError;
 use super::model::Case;
+use super::tool_check;
 
 /// Checks sheet, tools and stroke together.
 pub(crate) fn check(case: &Case) -> Result<(), CaseError> {
+    if case.tools.from_file() {
+        return tool_check::check(case);
+    }
     check_punch(case)?;
     check_clearance(case)?;
     check_depth(case)?;

@@ -5,7 +5,7 @@ use super::kind::{Kind, Problem, Real};
 use super::model::{Case, Inverse, Restart};
 use super::option::{Described, Group};
 use super::table::{self, TABLE};
-use crate::text::show_real;
+use crate::text::{shortened, show_real};
 
 const NONE: &str = "none";
 /// Most parameters of a design: two numbers cannot be had from one angle but by a rule which change is the least.
@@ -212,6 +212,12 @@ fn check_one(case: &Case, sought: &Sought) -> Result<(), CaseError> {
     if loading && case.inverse.identify.is_some() {
         return refuse(format!(
             "{name} is how the test was made, and cannot be identified from it; leave it out, and set -{name}"
+        ));
+    }
+    if let Some((owner, path)) = case.tools.replaced_by(name) {
+        return refuse(format!(
+            "{name} has no effect: -{owner} {} takes its place; leave one of the two out",
+            shortened(path)
         ));
     }
     let Some(start) = case.real(name) else {

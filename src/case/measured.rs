@@ -67,7 +67,9 @@ fn points(text: &str, greatest: f64) -> Result<Vec<MeasuredPoint>, Refusal> {
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
     let malformed = |error: csv::Error| {
-        let line = error.position().map(|position| line_of(text, position));
+        let line = error
+            .position()
+            .map(|position| text::line_of(text, position));
         (
             line,
             "the line has another number of columns than the header; each needs a comma".to_owned(),
@@ -91,7 +93,7 @@ fn points(text: &str, greatest: f64) -> Result<Vec<MeasuredPoint>, Refusal> {
     let mut points: Vec<MeasuredPoint> = Vec::new();
     for row in table.records() {
         let row = row.map_err(malformed)?;
-        let line = row.position().map(|position| line_of(text, position));
+        let line = row.position().map(|position| text::line_of(text, position));
         let number = |column: usize| {
             let text = row.get(column).unwrap_or_default();
             let value = text.parse().ok().filter(|value: &f64| value.is_finite());
@@ -115,14 +117,6 @@ fn points(text: &str, greatest: f64) -> Result<Vec<MeasuredPoint>, Refusal> {
         points.push(point);
     }
     Ok(points)
-}
-
-/// The line of a row: its position is before the empty lines and comments above it.
-fn line_of(text: &str, position: &csv::Position) -> u64 {
-    let first = position.line();
-    let before = text.lines().skip(first.saturating_sub(1) as usize);
-    let skipped = |line: &&str| line.trim().is_empty() || line.starts_with('#');
-    first + before.take_while(skipped).count() as u64
 }
 
 fn check(

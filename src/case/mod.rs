@@ -24,6 +24,9 @@ mod reference_force;
 mod reference_regression;
 mod sensitivity;
 mod table;
+mod tool_check;
+mod tool_file;
+mod tools;
 mod unused;
 
 pub use arguments::{
@@ -43,5 +46,7 @@ pub use provenance::Difference;
 pub use reference::{Instant, Origin, ReferenceValue, Tolerance};
 pub use reference_force::ReferenceForce;
 pub use sensitivity::Parameter;
+pub use tool_check::LeastGap;
+pub use tool_file::ToolFile;
 pub use unused::check_unused;
 pub(crate) use unused::{condensed_option, is_own};

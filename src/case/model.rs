@@ -1,6 +1,7 @@
 //! The case: the model a person describes, as plain numbers. Units are mm, N, MPa, g and ms.
 
 use super::inverse::Sought;
+use super::tool_file::ToolFile;
 use crate::contact::ContactLocation;
 use crate::element::Quadrature;
 use crate::material::Hardening;
@@ -72,8 +73,9 @@ impl Sheet {
     }
 }
 
-/// The rigid tools. The die's flat is y = 0 for x >= `die_edge`, the shoulder's centre is (`die_edge`, -shoulder radius),
-/// the cavity's centre (0, -shoulder radius); the punch's lowest point is first at (0, thickness).
+/// The rigid tools. Unless they are from files, the die's flat is y = 0 for x >= `die_edge`, the shoulder's centre is
+/// (`die_edge`, -shoulder radius), the cavity's centre (0, -shoulder radius); the punch's lowest point is first at
+/// (0, thickness).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tools {
     /// Radius of the punch, mm.
@@ -82,6 +84,10 @@ pub struct Tools {
     pub die_radius: f64,
     /// Radius of the shoulder, mm.
     pub die_shoulder_radius: f64,
+    /// The punch from a file, in place of the benchmark's.
+    pub punch_file: Option<ToolFile>,
+    /// The die from a file, in place of the benchmark's.
+    pub die_file: Option<ToolFile>,
 }
 
 impl Tools {
@@ -153,8 +159,10 @@ pub struct Discretisation {
     pub nx: usize,
     /// Elements through the thickness.
     pub ny: usize,
-    /// Gauss rule of the elements.
-    pub quadrature: Quadrature,
+    /// Gauss points along the sheet in an element.
+    pub points_along: usize,
+    /// Gauss points through the thickness in an element; none: as many as along the sheet.
+    pub points_through: Option<usize>,
     /// Where contact is looked for.
     pub contact_location: ContactLocation,
     /// Contact points on each element edge of the sheet's surfaces.
@@ -169,6 +177,12 @@ impl Discretisation {
     /// Number of elements of the sheet.
     pub fn elements(&self) -> usize {
         self.nx * self.ny
+    }
+
+    /// Gauss rule of the elements.
+    pub fn quadrature(&self) -> Quadrature {
+        let through = self.points_through.unwrap_or(self.points_along);
+        Quadrature::of(self.points_along, through)
     }
 }
 

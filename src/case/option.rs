@@ -193,6 +193,7 @@ impl<K: Kind + Sync> Described for Opt<K> {
         self.kind.allowed()
     }
     fn shown(&self, case: &Case) -> Option<String> {
-        Some(self.kind.show(&(self.value)(case)))
+        let in_use = case.tools.replaced_by(self.name).is_none();
+        in_use.then(|| self.kind.show(&(self.value)(case)))
     }
 }

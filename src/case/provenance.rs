@@ -18,6 +18,13 @@ pub struct Difference {
     pub reference: String,
 }
 
+/// Options whose value is a path of the model: what the file says counts, not where it lies.
+const FILES: [&str; 3] = [
+    table::HARDENING_FILE.name,
+    table::PUNCH_PROFILE.name,
+    table::DIE_PROFILE.name,
+];
+
 impl Case {
     /// Every option the case has a use for, with the value in effect, in the order of the table. Read again, they give the
     /// same case.
@@ -38,15 +45,14 @@ impl Case {
 
     /// How this case differs from another one that was saved by [`Case::options`]: where physics or mesh differ, and where
     /// only the way to the solution does. The value of the other case is called the reference. Paths of hardening tables
-    /// are not compared.
+    /// and of tools are not compared.
     pub fn differences_from_saved(
         &self,
         saved: &BTreeMap<String, String>,
     ) -> (Vec<Difference>, Vec<Difference>) {
         let compared = |option: &&&dyn Described| {
             let group = option.group();
-            (group.defines_model() || group == Group::Stepping)
-                && option.name() != table::HARDENING_FILE.name
+            (group.defines_model() || group == Group::Stepping) && !FILES.contains(&option.name())
         };
         TABLE
             .iter()
@@ -79,17 +85,25 @@ impl Case {
     }
 
     /// The options that make physics or mesh differ from the reference case; time steps, tolerances and output may differ
-    /// freely. A hardening table counts by its curve, not by its path.
+    /// freely. A hardening table counts by its curve and a tool by its outline, not by their paths.
     ///
     /// # Errors
     /// None unless the program's own table is broken, which the tests exclude.
     pub fn differences_from_reference(&self) -> Result<Vec<Difference>, CaseError> {
         let reference = Case::reference()?;
-        let same_curve = self.material.hardening == reference.material.hardening;
+        let [die, punch] = self.benchmark_files();
+        let same = |option: &str| match option {
+            _ if option == table::HARDENING_FILE.name => {
+                self.material.hardening == reference.material.hardening
+            }
+            _ if option == table::DIE_PROFILE.name => die,
+            _ if option == table::PUNCH_PROFILE.name => punch,
+            _ => false,
+        };
         let differences = TABLE
             .iter()
             .filter(|option| option.group().defines_model())
-            .filter(|option| option.name() != table::HARDENING_FILE.name || !same_curve)
+            .filter(|option| !same(option.name()))
             .filter_map(|option| {
                 Some(Difference {
                     option: option.name(),

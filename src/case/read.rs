@@ -6,10 +6,9 @@ use super::error::CaseError;
 use super::hardening::{constants, has};
 use super::model::{
     Case, Discretisation, Friction, Inverse, Loading, Material, Output, Resuming, Sheet, Stepping,
-    Tools,
 };
 use super::option::{self, OptionSource};
-use super::{geometry, inverse, table};
+use super::{geometry, inverse, table, tools};
 use crate::material::hardening::{Declaration, Hardening, LAWS};
 use crate::text::shortened;
 
@@ -26,11 +25,7 @@ impl Case {
                 thickness: table::SHEET_THICKNESS.read(options)?,
                 width: table::SHEET_WIDTH.read(options)?,
             },
-            tools: Tools {
-                punch_radius: table::PUNCH_RADIUS.read(options)?,
-                die_radius: table::DIE_RADIUS.read(options)?,
-                die_shoulder_radius: table::DIE_SHOULDER_RADIUS.read(options)?,
-            },
+            tools: tools::read(options)?,
             loading: Loading {
                 stroke: table::STROKE.read(options)?,
                 unload_fraction: table::UNLOAD_FRACTION.read(options)?,
@@ -46,7 +41,8 @@ impl Case {
             discretisation: Discretisation {
                 nx: table::SHEET_NX.read(options)?,
                 ny: table::SHEET_NY.read(options)?,
-                quadrature: table::QUADRATURE.read(options)?,
+                points_along: table::QUADRATURE.read(options)?,
+                points_through: table::QUADRATURE_THICKNESS.read(options)?,
                 contact_location: table::CONTACT_LOCATION.read(options)?,
                 contact_points_per_edge: table::CONTACT_POINTS_PER_EDGE.read(options)?,
                 contact_compliance: table::CONTACT_COMPLIANCE.read(options)?,

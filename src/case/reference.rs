@@ -24,7 +24,7 @@ const HEADER: [&str; 8] = [
 pub enum Origin {
     /// Another code, a document, a closed solution.
     Independent,
-    /// This program or an earlier study with the same equations: agreement says that nothing has changed, no more.
+    /// This program, on this mesh or a finer one: agreement says that little has changed, or how fine this mesh is, no more.
     Own,
 }
 

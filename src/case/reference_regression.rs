@@ -57,7 +57,10 @@ impl Case {
             .map(|(name, value)| (name.to_owned(), value))
             .collect();
         let (model, steps) = self.differences_from_saved(&saved);
-        model.is_empty() && steps.is_empty() && self.material.hardening == other.material.hardening
+        model.is_empty()
+            && steps.is_empty()
+            && self.material.hardening == other.material.hardening
+            && self.tool_marks() == other.tool_marks()
     }
 }
 

@@ -6,7 +6,7 @@ use super::kind::{Kind, Problem, Real};
 use super::model::Case;
 use super::option::Opt;
 use super::table;
-use crate::text::show_real;
+use crate::text::{shortened, show_real};
 
 /// Names of parameters with commas between; the word none means an empty list.
 pub(crate) struct Parameters;
@@ -91,6 +91,12 @@ impl Case {
 
     fn parameter(&self, name: &'static str) -> Result<Parameter, CaseError> {
         let refuse = |reason: String| Err(CaseError::NoDerivative { name, reason });
+        if let Some((owner, path)) = self.tools.replaced_by(name) {
+            return refuse(format!(
+                "-{owner} {} takes the place of -{name}, and a tool from a file has no parameter; leave it out",
+                shortened(path)
+            ));
+        }
         let law = self.material.hardening_law;
         let (unit, value) = match OPTIONS.iter().find(|option| option.name == name) {
             Some(option) => (option.unit, (option.value)(self)),

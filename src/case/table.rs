@@ -15,11 +15,19 @@ use super::kind_resuming::{Restarting, WallTime};
 use super::model::Dynamics;
 use super::option::{Described, Group, Opt};
 use super::sensitivity::Parameters;
+use super::tool_file::ToolFile;
 use crate::contact::ContactLocation;
-use crate::element::Quadrature;
 
 /// The value of -hardening_file that means the table compiled into the program.
 pub(crate) const BENCHMARK_TABLE: &str = "benchmark";
+
+/// The value of -punch_profile and -die_profile that means the benchmark's own.
+pub(crate) const BENCHMARK_TOOL: &str = "benchmark";
+
+fn tool_path(file: &Option<ToolFile>) -> String {
+    let path = file.as_ref().map(|file| file.path.clone());
+    path.unwrap_or_else(|| BENCHMARK_TOOL.to_owned())
+}
 
 macro_rules! option_table {
     ($($option:ident: $kind:ty { $($field:tt)* })*) => {
@@ -63,6 +71,17 @@ option_table! {
         name: "die_shoulder_radius", unit: "mm", default: "4", group: Group::Tools, kind: Real::positive(1e5),
         meaning: "Radius of the shoulder between the die's cavity and its flat.",
         value: |case| case.tools.die_shoulder_radius,
+    }
+    PUNCH_PROFILE: Path {
+        name: "punch_profile", unit: "", default: BENCHMARK_TOOL, group: Group::Tools, kind: Path,
+        meaning: "Outline of the punch, a CSV file with the columns x_mm,y_mm,radius_mm (docs/tools.md), in place of -punch_radius; \
+                  the word benchmark means the benchmark's punch.",
+        value: |case| tool_path(&case.tools.punch_file),
+    }
+    DIE_PROFILE: Path {
+        name: "die_profile", unit: "", default: BENCHMARK_TOOL, group: Group::Tools, kind: Path,
+        meaning: "Outline of the die likewise, in place of -die_radius and -die_shoulder_radius.",
+        value: |case| tool_path(&case.tools.die_file),
     }
     STROKE: Real {
         name: "stroke", unit: "mm", default: "28.5", group: Group::Loading, kind: Real::positive(1e5),
@@ -141,10 +160,26 @@ option_table! {
         meaning: "Elements through the thickness.",
         value: |case| case.discretisation.ny,
     }
-    QUADRATURE: Choice<Quadrature> {
-        name: "quadrature", unit: "", default: "2", group: Group::Discretisation, kind: Choice(&[("2", Quadrature::Reduced), ("3", Quadrature::Full)]),
+    QUADRATURE: Choice<usize> {
+        name: "quadrature", unit: "", default: "2", group: Group::Discretisation, kind: Choice(&[("2", 2), ("3", 3)]),
         meaning: "Gauss points per direction in an element; 2 is reduced integration of the quadratic element.",
-        value: |case| case.discretisation.quadrature,
+        value: |case| case.discretisation.points_along,
+    }
+    QUADRATURE_THICKNESS: Choice<Option<usize>> {
+        name: "quadrature_thickness", unit: "", default: "same", group: Group::Discretisation,
+        kind: Choice(&[
+            ("same", None),
+            ("2", Some(2)),
+            ("3", Some(3)),
+            ("4", Some(4)),
+            ("5", Some(5)),
+            ("7", Some(7)),
+            ("10", Some(10)),
+            ("15", Some(15)),
+        ]),
+        meaning: "Gauss points through the thickness in an element, in place of -quadrature's: more of them see better where the bent \
+                  sheet begins to yield, which decides the angle after release.",
+        value: |case| case.discretisation.points_through,
     }
     CONTACT_LOCATION: Choice<ContactLocation> {
         name: "contact_location", unit: "", default: "points", group: Group::Discretisation,

@@ -134,7 +134,7 @@ impl HalfStepGrid {
         let full_row = 2 * self.nx + 1;
         let sparse_row = self.nx + 1;
         let row_start = (j / 2) * (full_row + sparse_row) + (j % 2) * full_row;
-        row_start + if j.is_multiple_of(2) { i } else { i / 2 }
+        row_start + if j % 2 == 0 { i } else { i / 2 }
     }
 }
 

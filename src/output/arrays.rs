@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use hdf5::{File, H5Type};
 
 use super::OutputError;
+use super::space::{self, BESIDE_VALUES};
 
 /// The file, being written or read.
 pub struct Arrays {
@@ -42,8 +43,11 @@ impl Arrays {
     /// Writes an array.
     ///
     /// # Errors
-    /// [`OutputError::Hdf5`], for example when the disk is full.
+    /// [`OutputError::NoSpace`] when the disk is full, otherwise [`OutputError::Hdf5`].
     pub fn put<T: H5Type>(&self, name: &str, values: &[T]) -> Result<(), OutputError> {
+        // From the start: HDF5 keeps its own part back until the file is closed.
+        let bytes = self.file.size() + size_of_val(values) as u64 + BESIDE_VALUES;
+        space::reserve(&self.path, 0, bytes)?;
         let builder = self.file.new_dataset::<T>().shape(values.len());
         let written = builder
             .create(name)
@@ -102,7 +106,7 @@ impl Arrays {
     /// Closes the file; says whether all of it was written.
     ///
     /// # Errors
-    /// [`OutputError::Hdf5`], for example when the disk is full.
+    /// [`OutputError::Hdf5`] if not.
     pub fn close(self) -> Result<(), OutputError> {
         let Self { path, file } = self;
         file.flush()

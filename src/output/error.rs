@@ -1,5 +1,6 @@
 //! Why something could not be written or read, as one sentence with the path in it.
 
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use mpi::traits::Communicator;
@@ -64,6 +65,14 @@ pub enum OutputError {
         /// The system's words.
         reason: String,
     },
+    /// The disk is full, or the user's share of it.
+    #[error("cannot write {}: {reason}; make room and go on with -restart, or choose another folder with -output_dir", path.display())]
+    NoSpace {
+        /// The file.
+        path: PathBuf,
+        /// What is needed and what is there, or the system's words.
+        reason: String,
+    },
     /// A file could not be read, or does not hold what it should.
     #[error("cannot read {}: {reason}", path.display())]
     Read {
@@ -117,10 +126,13 @@ pub enum OutputError {
 }
 
 impl OutputError {
-    pub(crate) fn write(path: &Path, reason: impl ToString) -> Self {
-        Self::Write {
-            path: path.into(),
-            reason: reason.to_string(),
+    /// [`OutputError::NoSpace`] if that is the reason, [`OutputError::Write`] else.
+    pub(crate) fn write(path: &Path, error: impl Into<io::Error>) -> Self {
+        let (path, error) = (path.into(), error.into());
+        let reason = error.to_string();
+        match error.kind() {
+            ErrorKind::StorageFull | ErrorKind::QuotaExceeded => Self::NoSpace { path, reason },
+            _ => Self::Write { path, reason },
         }
     }
 

@@ -1,11 +1,14 @@
 //! One run at a time in an output folder: an advisory lock, which the system releases when the process that holds it
 //! ends, however it ends. The file may stay behind then; what counts is the lock on it.
 
-use std::fs::{self, File, OpenOptions, TryLockError};
+use std::fs::{self, File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
+
+use rustix::fs::{FlockOperation, flock};
+use rustix::io::Errno;
 
 use super::error::OutputError;
 
@@ -41,7 +44,7 @@ impl FolderLock {
                 path: path.clone(),
                 reason: error.to_string(),
             })?;
-            match file.try_lock() {
+            match flock(&file, FlockOperation::NonBlockingLockExclusive) {
                 // The run that held it has removed it since: the lock is on a file without a name.
                 Ok(()) if !is_at(&file, &path) => {}
                 Ok(()) => {
@@ -49,8 +52,8 @@ impl FolderLock {
                     let file = Some(file);
                     return Ok(Self { path, file });
                 }
-                Err(TryLockError::WouldBlock) => return Err(in_use(folder, &path)),
-                Err(TryLockError::Error(_)) => return Ok(Self { path, file: None }),
+                Err(Errno::WOULDBLOCK) => return Err(in_use(folder, &path)),
+                Err(_) => return Ok(Self { path, file: None }),
             }
         }
         Err(in_use(folder, &path))
@@ -105,8 +108,7 @@ fn in_use(folder: &Path, lock: &Path) -> OutputError {
 /// A time in seconds since 1970 as date and time of day.
 fn utc(seconds: u64) -> String {
     let (mut days, second) = (seconds / DAY, seconds % DAY);
-    let leap =
-        |year: u64| year.is_multiple_of(4) && !year.is_multiple_of(100) || year.is_multiple_of(400);
+    let leap = |year: u64| year % 4 == 0 && year % 100 != 0 || year % 400 == 0;
     let mut year = 1970;
     while days >= 365 + u64::from(leap(year)) {
         days -= 365 + u64::from(leap(year));

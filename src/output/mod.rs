@@ -21,6 +21,7 @@ pub mod plot;
 mod previous;
 pub mod record;
 pub mod report;
+mod space;
 pub mod summary;
 pub mod verdict;
 pub mod vtkhdf;

@@ -201,9 +201,7 @@ impl<W: Write> Monitor<W> {
 
     fn put(&mut self, text: &str, on_screen: bool) {
         let text = fitted(text);
-        if let Some(out) = &mut self.out
-            && on_screen
-        {
+        if let Some(out) = self.out.as_mut().filter(|_| on_screen) {
             let shown = out.write_all(text.as_bytes()).and_then(|()| out.flush());
             if shown.is_err() {
                 self.out = None;

@@ -69,7 +69,8 @@ pub(super) fn replace(
 }
 
 fn name(path: &Path) -> String {
-    path.file_name().unwrap_or_default().display().to_string()
+    let name = path.file_name().unwrap_or_default();
+    name.to_string_lossy().into_owned()
 }
 
 fn lies_in(checkpoint: &Path, folder: &Path) -> bool {

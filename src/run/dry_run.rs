@@ -8,7 +8,7 @@ use mpi::traits::Communicator;
 use super::error::RunError;
 use super::recorder;
 use super::step_size::landmarks;
-use crate::case::{Case, Dynamics};
+use crate::case::{Case, CaseError, Dynamics, ToolFile};
 use crate::contact::ContactLocation;
 use crate::output::monitor::Monitor;
 use crate::output::{OutputDir, plot};
@@ -31,13 +31,13 @@ pub(super) fn describe(case: &Case, comm: &SimpleCommunicator) -> Result<(), Run
     let system = System::new(Problem::new(case), comm.duplicate())?;
     let folder = OutputDir::create(&case.output.dir, comm)?;
     if comm.rank() == 0 {
-        let local = system.local();
-        let (die, punch) = recorder::right_halves(local.problem());
+        let [die, punch] = recorder::right_halves([Some(&case.die()), Some(&case.punch())]);
         plot::model(folder.model_figure(), case, &die, &punch)?;
     }
     let shares = SubdomainSize::of_all(&system);
+    let tools = tools(case)?;
     let mut text = String::from("dry run: the model, nothing is solved\n\n");
-    for (name, value) in facts(case, &system, &shares, &landmarks(case)?) {
+    for (name, value) in facts(case, tools, &system, &shares, &landmarks(case)?) {
         text.push_str(&format!("{name:<12}  {value}\n"));
     }
     text.push_str(&table(&shares));
@@ -52,8 +52,15 @@ pub(super) fn describe(case: &Case, comm: &SimpleCommunicator) -> Result<(), Run
 /// A line of the description: what it is about, and what is to be said.
 type Fact = (&'static str, String);
 
-fn facts(case: &Case, system: &System, shares: &[SubdomainSize], landmarks: &[f64]) -> Vec<Fact> {
-    let mut facts = geometry(case);
+fn facts(
+    case: &Case,
+    tools: Vec<Fact>,
+    system: &System,
+    shares: &[SubdomainSize],
+    landmarks: &[f64],
+) -> Vec<Fact> {
+    let mut facts = vec![sheet(case)];
+    facts.extend(tools);
     facts.extend(material(case));
     facts.push(("loading", loading(case)));
     facts.push(("steps", steps(case, landmarks)));
@@ -67,42 +74,84 @@ fn facts(case: &Case, system: &System, shares: &[SubdomainSize], landmarks: &[f6
     facts
 }
 
-fn geometry(case: &Case) -> Vec<Fact> {
-    let Case { sheet, tools, .. } = case;
-    vec![
-        (
-            "sheet",
-            format!(
-                "{} x {} x {} mm; its right half is modelled, in plane strain",
-                sheet.length, sheet.thickness, sheet.width
-            ),
+fn sheet(case: &Case) -> Fact {
+    let sheet = &case.sheet;
+    let text = format!(
+        "{} x {} x {} mm; its right half is modelled, in plane strain",
+        sheet.length, sheet.thickness, sheet.width
+    );
+    ("sheet", text)
+}
+
+fn tools(case: &Case) -> Result<Vec<Fact>, CaseError> {
+    let tools = &case.tools;
+    let half_length = case.sheet.half_length();
+    let punch = match &tools.punch_file {
+        Some(file) => {
+            let touch = file.outline.first_touch(half_length);
+            format!("{}, touches first {}", from_file(file), along(touch.x))
+        }
+        None => format!(
+            "radius {} mm, touches first at (0, {}) mm",
+            tools.punch_radius, case.sheet.thickness
         ),
-        (
-            "punch",
-            format!(
-                "radius {} mm, touches first at (0, {}) mm",
-                tools.punch_radius, sheet.thickness
-            ),
+    };
+    let die = match &tools.die_file {
+        Some(file) => {
+            let touch = file.outline.first_touch(half_length);
+            format!("{}, holds the sheet {}", from_file(file), along(touch.x))
+        }
+        None => format!(
+            "cavity of radius {} mm, shoulder of radius {} mm, flat from x = {} mm on, {} mm deep",
+            tools.die_radius,
+            tools.die_shoulder_radius,
+            tools.die_edge(),
+            tools.die_edge()
         ),
-        (
-            "die",
-            format!(
-                "cavity of radius {} mm, shoulder of radius {} mm, flat from x = {} mm on, {} mm deep",
-                tools.die_radius,
-                tools.die_shoulder_radius,
-                tools.die_edge(),
-                tools.die_edge()
-            ),
-        ),
-        (
-            "clearance",
-            format!(
-                "{} mm between punch and cavity for a sheet of {} mm",
-                number(tools.die_radius - tools.punch_radius),
-                sheet.thickness
-            ),
-        ),
-    ]
+    };
+    let clearance = if tools.from_file() {
+        let least = case.least_gap()?;
+        format!(
+            "at least {:.3} mm between the tools for a sheet of {} mm, at a stroke of {} mm at ({:.3}, {:.3}) mm",
+            least.gap,
+            case.sheet.thickness,
+            number(least.stroke),
+            least.at[0],
+            least.at[1]
+        )
+    } else {
+        format!(
+            "{} mm between punch and cavity for a sheet of {} mm",
+            number(tools.die_radius - tools.punch_radius),
+            case.sheet.thickness
+        )
+    };
+    Ok(vec![
+        ("punch", punch),
+        ("die", die),
+        ("clearance", clearance),
+    ])
+}
+
+/// What a file says about its tool.
+fn from_file(file: &ToolFile) -> String {
+    let corners = file.outline.corners().len();
+    let out = file.outline.bends().iter().filter(|bend| bend.turn > 0.0);
+    let sharpest = out.map(|bend| bend.radius).fold(f64::INFINITY, f64::min);
+    let convex = match sharpest {
+        f64::INFINITY => "none of them sticks out".to_owned(),
+        0.0 => "one that sticks out is sharp".to_owned(),
+        radius => format!("sharpest radius that sticks out {} mm", number(radius)),
+    };
+    format!("{corners} corners of {}, {convex}", file.path)
+}
+
+fn along([from, to]: [f64; 2]) -> String {
+    if from == to {
+        format!("at x = {} mm", number(from))
+    } else {
+        format!("from x = {} to {} mm", number(from), number(to))
+    }
 }
 
 fn material(case: &Case) -> [Fact; 2] {

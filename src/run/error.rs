@@ -22,7 +22,7 @@ pub enum RunError {
     Output(#[from] OutputError),
     /// PETSc.
     #[error("{0}; if a value of one of PETSc's options is to blame: -help lists what each can be")]
-    Petsc(#[from] petsc::Error),
+    Petsc(petsc::Error),
     /// A limit on memory that would make the BLAS hang.
     #[error(
         "a limit on memory (ulimit -v, or one of the batch system) leaves less than {megabytes} MB for the factorisation on a \
@@ -41,6 +41,16 @@ pub enum RunError {
     /// A hook of the time stepper.
     #[error(transparent)]
     Hook(#[from] CallbackError),
+}
+
+impl From<petsc::Error> for RunError {
+    /// What a hook of ours failed with went through PETSc only: no option of PETSc's is to blame.
+    fn from(error: petsc::Error) -> Self {
+        match error {
+            petsc::Error::Callback { source, .. } => Self::Hook(source),
+            error => Self::Petsc(error),
+        }
+    }
 }
 
 /// Why there is nothing to go on from.

@@ -69,10 +69,10 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
         return dry_run::describe(case, comm).map(|()| None);
     }
     let beside = Beside::of(case)?;
-    if let Some(first) = beside.first()
-        && linear::left_to_petsc()?
-    {
-        return Err(linear::no_derivatives(first.parameter.name).into());
+    if let Some(first) = beside.first() {
+        if linear::left_to_petsc()? {
+            return Err(linear::no_derivatives(first.parameter.name).into());
+        }
     }
     let stop_watch = StopWatch::new(&case.resuming, clock)?;
     // The lock comes before the look at the checkpoints; a refused restart makes no folder.

@@ -174,10 +174,10 @@ impl Solver {
             _ => FactorKind::General,
         };
         let prefix = choice.options_prefix;
-        if choice.method == CondensedMethod::Substructures
-            && let Some(solver) = Substructures::new(system, &pattern, kind, prefix)?
-        {
-            return Ok(Self::Substructures(Box::new(solver)));
+        if choice.method == CondensedMethod::Substructures {
+            if let Some(solver) = Substructures::new(system, &pattern, kind, prefix)? {
+                return Ok(Self::Substructures(Box::new(solver)));
+            }
         }
         for index in pattern.rows.iter_mut().chain(&mut pattern.columns) {
             *index = usize::try_from(*index).map_or(-1, |local| rows[local]);

@@ -2,7 +2,7 @@
 
 use super::System;
 use crate::mesh::SurfaceSide;
-use crate::ranks::gather_lists;
+use crate::ranks::{gather_lists, rows};
 
 /// A contact point, as every rank knows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,10 +30,9 @@ impl System {
             })
             .collect();
         let all = gather_lists(self.comm(), &flat);
-        let (all, _) = all.as_chunks();
-        let mut places: Vec<_> = all
-            .iter()
-            .map(|&[along, upper, mark]| ContactPlace {
+        let mut places: Vec<_> = rows(&all)
+            .into_iter()
+            .map(|[along, upper, mark]| ContactPlace {
                 along,
                 side: if upper > 0.0 {
                     SurfaceSide::Top

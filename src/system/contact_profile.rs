@@ -44,12 +44,13 @@ impl ContactProfile {
     /// Of points in any order.
     pub fn new(mut feet: Vec<Foot>) -> Self {
         feet.sort_by(|a, b| a.along.total_cmp(&b.along));
-        let pressed = feet
+        let pressed: Vec<&[Foot]> = feet
             .chunk_by(|a, b| (a.distance < 0.0) == (b.distance < 0.0))
-            .filter(|run| run[0].distance < 0.0);
+            .filter(|run| run[0].distance < 0.0)
+            .collect();
         Self {
-            zones: pressed.clone().map(Zone::of).collect(),
-            resolved: pressed.clone().all(|run| run.len() >= LEAST_POINTS),
+            zones: pressed.iter().copied().map(Zone::of).collect(),
+            resolved: pressed.iter().all(|run| run.len() >= LEAST_POINTS),
             feet,
         }
     }

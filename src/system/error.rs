@@ -5,7 +5,7 @@ use petsc::Failure;
 
 use crate::element::GaussPointFailure;
 use crate::mesh::PartitionError;
-use crate::ranks::{broadcast_bytes, lowest_failing};
+use crate::ranks::{broadcast_bytes, lowest_failing, rows};
 
 /// The system could not be set up, or an accepted state not be evaluated.
 #[derive(Debug, thiserror::Error)]
@@ -100,9 +100,10 @@ impl FailedElement {
         }
         let numbers = broadcast_bytes(comm, lowest, numbers);
         let cause = broadcast_bytes(comm, lowest, cause);
+        let numbers = rows(&numbers);
         let number = |k: usize| {
-            let number = numbers.as_chunks().0.get(k);
-            number.map_or(f64::NAN, |bytes| f64::from_ne_bytes(*bytes))
+            let bytes = numbers.get(k);
+            bytes.map_or(f64::NAN, |bytes| f64::from_ne_bytes(*bytes))
         };
         Some(Self {
             element: number(0) as usize,

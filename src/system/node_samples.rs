@@ -255,12 +255,12 @@ fn extrapolation(quadrature: Quadrature) -> Vec<[f64; 8]> {
     let points = gauss_points(quadrature);
     let count = points.len() as f64;
     // On a symmetric tensor rule 1, ξ, η and ξη are orthogonal: the fit needs no solve.
-    let mean_square = points.iter().map(|(x, _)| x[0] * x[0]).sum::<f64>() / count;
+    let mean_square = [0, 1].map(|k| points.iter().map(|(x, _)| x[k] * x[k]).sum::<f64>() / count);
     points
         .iter()
         .map(|([xi, eta], _)| {
             NODES.map(|[xa, ea]| {
-                let (along, across) = (xi * xa / mean_square, eta * ea / mean_square);
+                let (along, across) = (xi * xa / mean_square[0], eta * ea / mean_square[1]);
                 (1.0 + along) * (1.0 + across) / count
             })
         })
@@ -273,4 +273,29 @@ fn half_edge_hats(shape: &[f64; 3]) -> [f64; 3] {
     // The right minus the left shape function is ξ.
     let xi = shape[1] - shape[0];
     [(-xi).max(0.0), xi.max(0.0), 1.0 - xi.abs()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bilinear_field_is_extrapolated_exactly() {
+        let field = |[xi, eta]: [f64; 2]| 1.0 - 2.0 * xi + 3.0 * eta + 0.5 * xi * eta;
+        for (along, through) in [(2, 2), (3, 3), (2, 7), (3, 5)] {
+            let quadrature = Quadrature::of(along, through);
+            let (points, weights) = (gauss_points(quadrature), extrapolation(quadrature));
+            for (node, place) in NODES.into_iter().enumerate() {
+                let found: f64 = points
+                    .iter()
+                    .zip(&weights)
+                    .map(|((xi, _), weights)| weights[node] * field(*xi))
+                    .sum();
+                assert!(
+                    (found - field(place)).abs() < 1e-13,
+                    "{along} x {through}, {node}"
+                );
+            }
+        }
+    }
 }

@@ -16,10 +16,10 @@ pub(super) fn on_root(
     }
     // METIS is deterministic, so a rank that needs the message of a failure can ask it again.
     let mut parts: Vec<u64> = vec![u64::MAX; mesh.elements.len()];
-    if comm.rank() == 0
-        && let Ok(found) = partition(mesh, ranks)
-    {
-        parts = found.into_iter().map(|part| part as u64).collect();
+    if comm.rank() == 0 {
+        if let Ok(found) = partition(mesh, ranks) {
+            parts = found.into_iter().map(|part| part as u64).collect();
+        }
     }
     comm.process_at_rank(0).broadcast_into(&mut parts[..]);
     if parts[0] == u64::MAX {

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::case::{Case, Dynamics, Tools};
+use crate::case::{Case, Dynamics};
 use crate::contact::{ContactRule, ContactSample};
 use crate::element::Quadrature;
 use crate::material::VonMises;
 use crate::mesh::{SheetMesh, SurfaceSide};
-use crate::tool::{Distance, Motion, Profile, die, punch};
+use crate::tool::{Distance, Motion, Profile};
 
 /// The whole problem, the same on every rank.
 #[derive(Clone, Debug)]
@@ -92,11 +92,6 @@ impl Factor {
 impl Problem {
     /// The problem a case describes.
     pub fn new(case: &Case) -> Self {
-        let Tools {
-            punch_radius,
-            die_radius,
-            die_shoulder_radius,
-        } = case.tools;
         let (sheet, divisions, loading) = (&case.sheet, &case.discretisation, &case.loading);
         let density = match loading.dynamics {
             Dynamics::Slow => case.material.density,
@@ -125,7 +120,7 @@ impl Problem {
             ),
             young_modulus: case.material.young_modulus,
             density,
-            quadrature: divisions.quadrature,
+            quadrature: divisions.quadrature(),
             contact_rule: ContactRule::new(
                 divisions.contact_location,
                 divisions.contact_points_per_edge,
@@ -134,11 +129,11 @@ impl Problem {
             friction_coefficient: case.friction.coefficient,
             friction_compliance: case.friction.compliance,
             lower_tool: Some(Arc::new(Tool {
-                profile: die(die_radius, die_shoulder_radius, sheet.half_length()),
+                profile: case.die(),
                 motion: Motion::Fixed,
             })),
             upper_tool: Some(Arc::new(Tool {
-                profile: punch(punch_radius, sheet.thickness, loading.stroke),
+                profile: case.punch(),
                 motion: Motion::Down(loading.motion()),
             })),
             whole_sheet: sheet.force_factor(),

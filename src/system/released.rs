@@ -7,7 +7,7 @@ use super::System;
 use super::error::{FailedElement, SystemError};
 use super::history::History;
 use super::problem::{Factor, NodalValue, Problem};
-use crate::ranks::gather_lists;
+use crate::ranks::{gather_lists, rows};
 
 /// A sheet whose tools have just been taken away, at the unknowns it had with them.
 pub struct Released {
@@ -107,10 +107,9 @@ fn held_nodes(
         })
         .collect();
     let all = gather_lists(system.comm(), &mine);
-    let (all, _) = all.as_chunks();
-    let mut held: Vec<HeldNode> = all
-        .iter()
-        .map(|&[node, x, y, height]| HeldNode {
+    let mut held: Vec<HeldNode> = rows(&all)
+        .into_iter()
+        .map(|[node, x, y, height]| HeldNode {
             node: node as usize,
             force: [x, y],
             height,

@@ -9,6 +9,7 @@ use super::mesh_order::{MeshOrder, gather_blocks};
 use crate::contact::FrictionState;
 use crate::material::PointState;
 use crate::plane::PlaneTensor;
+use crate::ranks::rows;
 
 /// Numbers per Gauss point: C_p⁻¹ (xx, xy, yy, zz) and equivalent plastic strain.
 const PER_GAUSS_POINT: usize = 5;
@@ -76,8 +77,7 @@ impl Snapshot {
             self.contact_points.len(),
             PER_CONTACT_POINT * order.contact_point_count,
         )?;
-        let (gauss, _) = self.gauss_points.as_chunks();
-        let (contact, _) = self.contact_points.as_chunks();
+        let (gauss, contact) = (rows(&self.gauss_points), rows(&self.contact_points));
         let numbers = local
             .elements
             .iter()

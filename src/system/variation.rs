@@ -93,9 +93,8 @@ impl System {
         let first = all.ownership_range()?.start;
         let mut write = all.write()?;
         for (value, row) in local.iter().zip(self.local().rows()) {
-            if let Ok(own) = usize::try_from(row - first)
-                && let Some(entry) = write.get_mut(own)
-            {
+            let own = usize::try_from(row - first).ok();
+            if let Some(entry) = own.and_then(|own| write.get_mut(own)) {
                 *entry = *value;
             }
         }

@@ -1,10 +1,12 @@
 //! The pieces of a profile and their exact signed distance.
 
+use std::f64::consts::PI;
+
 use crate::plane::{SymmetricMatrix, Vector, dot};
 
 /// One piece of a profile. The chain is walked with the free side on the left, so the outward
 /// normal is the walking direction turned by +90 degrees.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Piece {
     /// A straight piece from `start` to `end` (mm).
     Segment {
@@ -174,6 +176,53 @@ impl Piece {
                 (angle <= (to - from).abs())
                     .then(|| arc_distance(radial, r, radius, turn, radius * angle))
             }
+        }
+    }
+
+    /// Whether a point of its circle or line is between its ends.
+    pub(super) fn holds(&self, x: Vector) -> bool {
+        self.distance(x, false, false).is_some()
+    }
+
+    /// The same piece walked the other way.
+    pub(super) fn reversed(&self) -> Self {
+        match *self {
+            Piece::Segment { start, end } => Piece::Segment {
+                start: end,
+                end: start,
+            },
+            Piece::Arc {
+                centre,
+                radius,
+                from,
+                to,
+            } => Piece::Arc {
+                centre,
+                radius,
+                from: to,
+                to: from,
+            },
+        }
+    }
+
+    /// Its mirror image about x = 0, walked so that it leads to where the piece begins on the axis.
+    pub(super) fn mirrored(&self) -> Self {
+        match *self {
+            Piece::Segment { start, end } => Piece::Segment {
+                start: [-end[0], end[1]],
+                end: [-start[0], start[1]],
+            },
+            Piece::Arc {
+                centre,
+                radius,
+                from,
+                to,
+            } => Piece::Arc {
+                centre: [-centre[0], centre[1]],
+                radius,
+                from: PI - to,
+                to: PI - from,
+            },
         }
     }
 

@@ -1,6 +1,7 @@
 //! Bad inputs and the sentence each gets: the table behind tests/bad_input.rs and docs/bad-input.md.
 
 pub mod inverse;
+pub mod tools;
 
 /// How an input reaches the program.
 pub enum Given {

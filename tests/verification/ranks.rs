@@ -44,9 +44,10 @@ pub fn by_two(cases: &[&Case]) -> Result<Found> {
     for line in text.lines() {
         // A quantity may hold semicolons itself; behind it there are six fields.
         let fields: Vec<&str> = line.rsplitn(7, ';').collect();
-        if let [_, _, _, _, _, computed, name] = fields[..]
-            && let Some((case, quantity)) = name.split_once(';')
-        {
+        let [_, _, _, _, _, computed, name] = fields[..] else {
+            continue;
+        };
+        if let Some((case, quantity)) = name.split_once(';') {
             found.insert((case.to_owned(), quantity.to_owned()), computed.parse()?);
         }
     }

@@ -62,7 +62,8 @@ fn the_two_newest_are_kept() {
 fn what_could_not_be_filled_leaves_the_earlier_ones() {
     let folder = scratch("unfilled");
     let first = make(&folder, 3);
-    let error = OutputError::write(&folder, "No space left on device");
+    let error = OutputError::write(&folder, std::io::Error::from_raw_os_error(28));
+    assert!(matches!(error, OutputError::NoSpace { .. }), "{error}");
     let written = write(&folder, 5, |to| {
         fs::write(to.join("state.h5"), "half").unwrap();
         Err(error.clone())

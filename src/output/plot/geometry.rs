@@ -50,20 +50,18 @@ fn whole_outline(half: &[[f64; 2]]) -> Vec<[f64; 2]> {
     mirrored.chain(half.iter().copied()).collect()
 }
 
-/// The outline of the die from left to right, which goes on level to both sides of the frame.
-pub(super) fn die_outline(half: &[[f64; 2]], frame: &Frame) -> Vec<[f64; 2]> {
-    let mut line = half.to_vec();
-    if let Some(&[x, y]) = half.last() {
-        line.push([x.max(frame.x.0.abs()).max(frame.x.1.abs()) + 1.0, y]);
-    }
-    whole_outline(&line)
-}
-
-/// The outline of the punch from left to right, moved down by the stroke; its ends go on straight up.
-pub(super) fn punch_outline(half: &[[f64; 2]], stroke: f64, frame: &Frame) -> Vec<[f64; 2]> {
+/// The outline of a tool from left to right, moved down by the stroke (mm); its ends go straight on beyond the frame.
+pub(super) fn tool_outline(half: &[[f64; 2]], stroke: f64, frame: &Frame) -> Vec<[f64; 2]> {
     let mut line: Vec<_> = half.iter().map(|&[x, y]| [x, y - stroke]).collect();
-    if let Some(&[x, y]) = line.last() {
-        line.push([x, y.max(frame.y.1 + 1.0)]);
+    if let [.., before, last] = line[..] {
+        let step = [0, 1].map(|d| last[d] - before[d]);
+        let size = [frame.x.0, frame.x.1, frame.y.0, frame.y.1, last[0], last[1]];
+        let far = 2.0
+            * size
+                .iter()
+                .fold(1.0, |most: f64, size| most.max(size.abs()));
+        let length = step[0].hypot(step[1]).max(f64::MIN_POSITIVE);
+        line.push([0, 1].map(|d| last[d] + far * step[d] / length));
     }
     whole_outline(&line)
 }

@@ -3,7 +3,7 @@
 use plotters::style::text_anchor::HPos;
 
 use super::canvas::{Canvas, FAINT_INK, Frame, INK, LABEL_SIZE, TITLE_SIZE, render};
-use super::geometry::{clipped, die_outline, punch_outline, region};
+use super::geometry::{clipped, region, tool_outline};
 use super::shape::{DIE, MARK, PUNCH};
 use crate::case::Case;
 
@@ -21,15 +21,12 @@ const LABEL_ABOVE: f64 = 24.0;
 /// # Errors
 /// A sentence, if the drawing fails.
 pub fn model_svg(case: &Case, die: &[[f64; 2]], punch: &[[f64; 2]]) -> Result<String, String> {
-    let (sheet, tools) = (&case.sheet, &case.tools);
-    let half = sheet.half_length();
+    let half = case.sheet.half_length();
     let margin = half / MARGIN;
+    let sight = Sight::of(case, die, punch);
     let (x, y) = (
         (-half - margin, half + margin),
-        (
-            -tools.die_edge() - margin,
-            0.8 * tools.punch_radius + margin,
-        ),
+        (-sight.depth - margin, 0.8 * sight.height + margin),
     );
     let height = WIDTH * (y.1 - y.0) / (x.1 - x.0);
     let frame = Frame {
@@ -48,17 +45,17 @@ pub fn model_svg(case: &Case, die: &[[f64; 2]], punch: &[[f64; 2]]) -> Result<St
         );
         canvas.text((LEFT, 28.0), &title, TITLE_SIZE, INK, HPos::Left, false)?;
         frame.grid(canvas)?;
-        let die = die_outline(die, &frame);
+        let die = tool_outline(die, 0.0, &frame);
         canvas.polygon(&clipped(&region(&die, y.0 - 1.0), &frame), DIE)?;
-        let start = punch_outline(punch, 0.0, &frame);
+        let start = tool_outline(punch, 0.0, &frame);
         canvas.polygon(&clipped(&region(&start, y.1 + 1.0), &frame), PUNCH)?;
         for line in [&die, &start] {
             outline(canvas, &frame, line, FAINT_INK)?;
         }
-        let lowest = punch_outline(punch, case.loading.stroke, &frame);
+        let lowest = tool_outline(punch, case.loading.stroke, &frame);
         outline(canvas, &frame, &lowest, MARK)?;
         mesh(canvas, &frame, case)?;
-        labels(canvas, &frame, case)?;
+        labels(canvas, &frame, case, &sight)?;
         frame.axes(canvas, "x in mm", "y in mm")
     })
 }
@@ -106,52 +103,93 @@ fn mesh(canvas: &Canvas, frame: &Frame, case: &Case) -> Result<(), String> {
     Ok(())
 }
 
-fn labels(canvas: &Canvas, frame: &Frame, case: &Case) -> Result<(), String> {
+/// How far down and up there is something to see, and where the die begins to hold the sheet, mm.
+struct Sight {
+    depth: f64,
+    height: f64,
+    edge: f64,
+}
+
+impl Sight {
+    /// The sides of tools from files may go on for longer than the sheet.
+    fn of(case: &Case, die: &[[f64; 2]], punch: &[[f64; 2]]) -> Self {
+        let tools = &case.tools;
+        let half = case.sheet.half_length();
+        let lowest = die.iter().map(|[_, y]| -y).fold(0.0, f64::max);
+        let holds = die
+            .iter()
+            .find(|[_, y]| *y > -1e-6)
+            .map_or(half, |[x, _]| *x);
+        let highest = punch.iter().map(|[_, y]| y - case.sheet.thickness);
+        let (depth, edge) = match tools.die_file {
+            Some(_) => (lowest.min(half), holds),
+            None => (tools.die_edge(), tools.die_edge()),
+        };
+        let height = match tools.punch_file {
+            Some(_) => highest.fold(0.0, f64::max).min(0.5 * half),
+            None => tools.punch_radius,
+        };
+        Self {
+            depth,
+            height,
+            edge,
+        }
+    }
+}
+
+fn labels(canvas: &Canvas, frame: &Frame, case: &Case, sight: &Sight) -> Result<(), String> {
     let tools = &case.tools;
+    let half = case.sheet.half_length();
     let say = |x: f64, y: f64, text: String, color| {
-        canvas.text(
-            frame.at(x, y),
-            &text,
-            LABEL_SIZE,
-            color,
-            HPos::Center,
-            false,
-        )
+        let place = frame.at(x, y);
+        canvas.text(place, &text, LABEL_SIZE, color, HPos::Center, false)
     };
-    let edge = tools.die_edge();
-    let above = case.sheet.half_length() / LABEL_ABOVE;
-    say(
-        0.0,
-        0.45 * tools.punch_radius,
-        format!("punch, radius {} mm", tools.punch_radius),
-        INK,
-    )?;
-    say(
-        0.0,
-        -0.45 * edge,
-        format!("cavity, radius {} mm", tools.die_radius),
-        INK,
-    )?;
-    say(
-        0.5 * (edge + case.sheet.half_length()),
-        -0.35 * edge,
-        format!("shoulder, radius {} mm", tools.die_shoulder_radius),
-        INK,
-    )?;
-    say(
-        0.5 * (edge + case.sheet.half_length()),
-        case.sheet.thickness + above,
-        format!("sheet, {} x {} mm", case.sheet.length, case.sheet.thickness),
-        INK,
-    )?;
+    let (edge, depth) = (sight.edge, sight.depth);
+    let above = half / LABEL_ABOVE;
+    let beside = 0.5 * (edge + half);
+    let punch = match &tools.punch_file {
+        Some(file) => format!("punch, {}", file_name(&file.path)),
+        None => format!("punch, radius {} mm", tools.punch_radius),
+    };
+    // A nose is wide enough for its name farther up only.
+    let up = if tools.punch_file.is_some() {
+        0.68
+    } else {
+        0.45
+    };
+    say(0.0, up * sight.height, punch, INK)?;
+    match &tools.die_file {
+        Some(file) => say(
+            beside,
+            -0.35 * depth,
+            format!("die, {}", file_name(&file.path)),
+            INK,
+        )?,
+        None => {
+            let cavity = format!("cavity, radius {} mm", tools.die_radius);
+            say(0.0, -0.45 * edge, cavity, INK)?;
+            let shoulder = format!("shoulder, radius {} mm", tools.die_shoulder_radius);
+            say(beside, -0.35 * edge, shoulder, INK)?;
+        }
+    }
+    let sheet = format!("sheet, {} x {} mm", case.sheet.length, case.sheet.thickness);
+    say(beside, case.sheet.thickness + above, sheet, INK)?;
     let deepest = case.sheet.thickness - case.loading.stroke;
-    if -deepest > 0.6 * edge {
-        say(
-            0.0,
-            deepest + 1.6 * above,
-            "punch at full stroke".to_owned(),
-            MARK,
-        )?;
+    if -deepest > 0.6 * depth {
+        let text = "punch at full stroke".to_owned();
+        let y = match tools.punch_file {
+            Some(_) => 0.35 * deepest,
+            None => deepest + 1.6 * above,
+        };
+        say(0.0, y, text, MARK)?;
     }
     Ok(())
+}
+
+fn file_name(path: &str) -> String {
+    let name = std::path::Path::new(path).file_name();
+    name.map_or_else(
+        || path.to_owned(),
+        |name| name.to_string_lossy().into_owned(),
+    )
 }

@@ -6,9 +6,7 @@ use plotters::style::text_anchor::HPos;
 use super::canvas::{Canvas, FAINT_INK, Frame, INK, LABEL_SIZE, TITLE_SIZE, render};
 use super::color::{color_bar, viridis};
 use super::elements::DeformedElement;
-use super::geometry::{
-    boundary, clipped, curve, die_outline, grown, outline, punch_outline, region,
-};
+use super::geometry::{boundary, clipped, curve, grown, outline, region, tool_outline};
 use crate::text::number;
 
 pub(super) const DIE: RGBColor = RGBColor(205, 209, 215);
@@ -103,10 +101,9 @@ fn main_frame(shape: &Shape) -> Result<Frame, String> {
     let nodes = || shape.elements.iter().flat_map(|element| element.nodes);
     let [half_length, _] = shape.sheet;
     let right = nodes().map(|[x, _]| x).fold(half_length, f64::max);
-    let low = nodes()
-        .chain(shape.die.iter().copied())
-        .map(|[_, y]| y)
-        .fold(0.0, f64::min);
+    // The sides of a die may go down farther than there is anything to see.
+    let deepest = shape.die.iter().map(|[_, y]| y.max(-half_length));
+    let low = nodes().map(|[_, y]| y).chain(deepest).fold(0.0, f64::min);
     let high = nodes()
         .map(|[_, y]| y)
         .fold(half_length / HEADROOM, f64::max);
@@ -202,8 +199,8 @@ fn mark(canvas: &Canvas, frame: &Frame, seen: &Frame) -> Result<(), String> {
 }
 
 fn scene(canvas: &Canvas, frame: &Frame, shape: &Shape, top: f64) -> Result<(), String> {
-    let die = die_outline(shape.die, frame);
-    let punch = punch_outline(shape.punch, shape.stroke_mm, frame);
+    let die = tool_outline(shape.die, 0.0, frame);
+    let punch = tool_outline(shape.punch, shape.stroke_mm, frame);
     tool(canvas, frame, &die, frame.y.0 - 1.0, DIE)?;
     tool(canvas, frame, &punch, frame.y.1 + 1.0, PUNCH)?;
     elements(canvas, frame, shape.elements, top)

@@ -38,6 +38,8 @@ pub struct Report<'a> {
     pub records: &'a [StepRecord],
     /// Forces to show beside ours.
     pub reference: &'a ReferenceForce,
+    /// Outlines of die and punch in their first positions for x >= 0, from the axis outwards, mm.
+    pub tools: [Vec<[f64; 2]>; 2],
 }
 
 /// What the script reads.
@@ -57,9 +59,9 @@ struct Data<'a> {
 struct Model {
     half_length: f64,
     thickness: f64,
-    punch_radius: f64,
-    die_radius: f64,
-    shoulder_radius: f64,
+    /// Right halves of the outlines, punch in its first position; they go straight on beyond their ends.
+    die: Vec<[f64; 2]>,
+    punch: Vec<[f64; 2]>,
     stroke: f64,
     unload_fraction: f64,
     time_load: f64,
@@ -92,7 +94,6 @@ impl Report<'_> {
     fn model(&self) -> Model {
         let Case {
             sheet,
-            tools,
             loading,
             discretisation,
             ..
@@ -100,9 +101,8 @@ impl Report<'_> {
         Model {
             half_length: sheet.half_length(),
             thickness: sheet.thickness,
-            punch_radius: tools.punch_radius,
-            die_radius: tools.die_radius,
-            shoulder_radius: tools.die_shoulder_radius,
+            die: short(&self.tools[0]),
+            punch: short(&self.tools[1]),
             stroke: loading.stroke,
             unload_fraction: loading.unload_fraction,
             time_load: loading.time_load,
@@ -111,6 +111,13 @@ impl Report<'_> {
             elements: [discretisation.nx, discretisation.ny],
         }
     }
+}
+
+/// The points of an outline, rounded.
+fn short(line: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    line.iter()
+        .map(|point| point.map(|x| rounded(x, DIGITS)))
+        .collect()
 }
 
 /// The options of the reference case; none if the program's own table were broken, which the tests exclude.

@@ -7,11 +7,15 @@ use mpi::traits::{Communicator, CommunicatorCollectives};
 
 use super::collective::write_rows;
 use super::datasets::{extendable, fixed, write_unit, write_values};
-use super::steps::StepTable;
+use super::steps::{OF_ALL_ARRAYS, StepTable};
 use super::types::{ArraySpec, Kind, Part, Values};
+use crate::output::space::BESIDE_VALUES;
 
 /// What the series needs of a new file: the point arrays, the step table and the counter of steps.
 pub(super) type Growing = (Vec<Dataset>, StepTable, Attribute);
+
+/// Datasets of the mesh itself: three counts, points, connectivity, offsets and types.
+const OF_THE_MESH: usize = 7;
 
 /// This rank's place among all ranks.
 pub(super) struct Layout {
@@ -52,6 +56,23 @@ impl Layout {
             first_connectivity: sum(2, rank),
             total_connectivity: sum(2, ranks),
         }
+    }
+
+    /// What the file can grow by until the mesh is in it, bytes.
+    pub(super) fn mesh_bytes(
+        &self,
+        point_arrays: &[ArraySpec],
+        cell_arrays: &[(ArraySpec, Values)],
+    ) -> u64 {
+        let cell_specs = cell_arrays.iter().map(|(spec, _)| spec);
+        let of_a_cell = cell_specs.map(ArraySpec::bytes).sum::<usize>() + size_of::<u8>();
+        let values = 3 * size_of::<f64>() * self.total_points
+            + of_a_cell * self.total_cells
+            + size_of::<i64>() * (self.total_connectivity + self.total_cells + 4 * self.ranks);
+        // Each array has its own, and one in the table of steps.
+        let arrays = point_arrays.len() + cell_arrays.len();
+        let datasets = OF_THE_MESH + OF_ALL_ARRAYS + 2 * arrays;
+        values as u64 + BESIDE_VALUES * datasets as u64
     }
 
     /// Makes all groups and datasets. Collective; nothing in it differs from rank to rank.

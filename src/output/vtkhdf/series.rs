@@ -12,6 +12,7 @@ use super::layout::Layout;
 use super::steps::StepTable;
 use super::types::{ArraySpec, Part, Values};
 use crate::output::error::{OutputError, agree};
+use crate::output::space::{self, BESIDE_VALUES};
 
 /// The file being written. Dropping it closes the file on all ranks together: do that before MPI is finalised.
 pub(super) struct TimeSeries {
@@ -34,7 +35,8 @@ impl TimeSeries {
     /// the same result. Ranks without points or cells hand over an empty part.
     ///
     /// # Errors
-    /// [`OutputError::Mismatch`] if the part contradicts itself, [`OutputError::Hdf5`] if the file cannot be written.
+    /// [`OutputError::Mismatch`] if the part contradicts itself, [`OutputError::NoSpace`] if the disk is full,
+    /// [`OutputError::Hdf5`] if the file cannot be written.
     pub fn create(
         path: impl AsRef<Path>,
         comm: &impl Communicator,
@@ -53,14 +55,20 @@ impl TimeSeries {
                 .map_err(|reason| OutputError::mismatch(path, reason)),
         )?;
         let comm = comm.duplicate();
+        let layout = Layout::new(&comm, part);
+        let bytes = layout.mesh_bytes(point_arrays, cell_arrays);
+        let begun = match comm.rank() {
+            0 => begin(path, bytes),
+            _ => Ok(()),
+        };
+        agree(&comm, begun)?;
         let opened = File::with_options()
             .with_fapl(|access| access.mpio(comm.as_raw(), None))
-            .create(path);
+            .open_rw(path);
         let file = agree(
             &comm,
-            opened.map_err(|error| OutputError::hdf5(path, "creating it", error)),
+            opened.map_err(|error| OutputError::hdf5(path, "opening it on all ranks", error)),
         )?;
-        let layout = Layout::new(&comm, part);
         let failed = |error| OutputError::hdf5(path, "writing the mesh", error);
         let made = layout
             .define(&file, point_arrays, cell_arrays)
@@ -90,7 +98,8 @@ impl TimeSeries {
     /// returns, the step is on disk. Collective; all ranks return the same result.
     ///
     /// # Errors
-    /// [`OutputError::Mismatch`] if the values do not fit, [`OutputError::Hdf5`] if they cannot be written.
+    /// [`OutputError::Mismatch`] if the values do not fit, [`OutputError::NoSpace`] if the disk is full: then nothing has
+    /// been written of the step. [`OutputError::Hdf5`] if they cannot be written.
     pub fn append(&mut self, t_ms: f64, values: &[Values]) -> Result<(), OutputError> {
         let fits = if values.len() == self.point_specs.len() {
             values
@@ -108,6 +117,11 @@ impl TimeSeries {
             &self.comm,
             fits.map_err(|reason| OutputError::mismatch(&self.path, reason)),
         )?;
+        let room = match self.comm.rank() {
+            0 => space::reserve_behind(&self.path, self.step_bytes()),
+            _ => Ok(()),
+        };
+        agree(&self.comm, room)?;
         let written = self.append_everywhere(t_ms, values);
         let failed = |reason| {
             OutputError::hdf5(
@@ -119,6 +133,13 @@ impl TimeSeries {
         agree(&self.comm, written.map_err(failed))?;
         self.steps += 1;
         Ok(())
+    }
+
+    /// What the file can grow by with the next step.
+    fn step_bytes(&self) -> u64 {
+        let of_a_point = self.point_specs.iter().map(ArraySpec::bytes).sum::<usize>();
+        let beside = BESIDE_VALUES * self.point_specs.len() as u64;
+        (self.total_points * of_a_point) as u64 + beside + self.table.growth(self.steps)
     }
 
     /// Repeats the steps of a closed file with the same arrays, in which row `rows[i]` of every step is this rank's
@@ -166,4 +187,14 @@ impl TimeSeries {
         keep(self.file.flush().map_err(|error| error.to_string()));
         first_failure
     }
+}
+
+/// Makes an empty file, with room for `bytes`, for all ranks to open. On one rank.
+fn begin(path: &Path, bytes: u64) -> Result<(), OutputError> {
+    let failed = |error| OutputError::hdf5(path, "creating it", error);
+    let file = File::create(path).map_err(failed)?;
+    space::reserve_behind(path, bytes)?;
+    // This cuts the file to its size, and the reservation off.
+    file.close().map_err(failed)?;
+    space::reserve_behind(path, bytes)
 }

@@ -6,9 +6,13 @@ use hdf5::{Attribute, Dataset, Group, H5Type};
 use super::collective::write_rows;
 use super::datasets::{extend, extendable};
 use super::types::ArraySpec;
+use crate::output::space::BESIDE_VALUES;
 
 /// Steps per chunk of the step table: small enough to waste nothing, large enough for a whole run in a few chunks.
 const STEPS_PER_CHUNK: usize = 512;
+/// Datasets of the table besides one for each array: times, numbers of parts, and where parts, points, cells and
+/// connectivity start.
+pub(super) const OF_ALL_ARRAYS: usize = 6;
 
 /// `Steps`: for each step its time and where its data start. The mesh starts at 0 for every step.
 pub(super) struct StepTable {
@@ -64,6 +68,16 @@ impl StepTable {
             },
             count,
         ))
+    }
+
+    /// What it can grow by with step number `step` (counted from 0), bytes: its chunks are begun together.
+    pub(super) fn growth(&self, step: usize) -> u64 {
+        if step % STEPS_PER_CHUNK != 0 {
+            return 0;
+        }
+        let datasets = 2 + self.zeros.len() + self.point_offsets.len();
+        let chunk = STEPS_PER_CHUNK * size_of::<f64>();
+        datasets as u64 * (chunk as u64 + BESIDE_VALUES)
     }
 
     /// Adds the row of step number `step` (counted from 0) whose point data start at row `first_row`. Collective;

@@ -73,6 +73,17 @@ pub(super) struct ArraySpec {
     pub kind: Kind,
 }
 
+impl ArraySpec {
+    /// Bytes of one point or cell.
+    pub(super) fn bytes(&self) -> usize {
+        self.components
+            * match self.kind {
+                Kind::F64 => size_of::<f64>(),
+                Kind::I32 => size_of::<i32>(),
+            }
+    }
+}
+
 /// The values of an array on this rank: all components of the first point (or cell), then those of the second, ...
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Values<'a> {

@@ -5,7 +5,7 @@
 mod derivatives;
 mod state;
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
 use mpi::topology::SimpleCommunicator;
@@ -159,6 +159,12 @@ pub(super) fn hardening_checksum(case: &Case) -> u32 {
     crc32fast::hash(format!("{:?}", case.material.hardening).as_bytes())
 }
 
+/// The checksums by which it knows the outlines of die and punch, likewise; 0 for the benchmark's.
+pub(super) fn tool_checksums(case: &Case) -> [u32; 2] {
+    case.tool_marks()
+        .map(|mark| crc32fast::hash(mark.as_bytes()))
+}
+
 /// Refuses the checkpoint of another problem; says what else is not as it was.
 fn compare(case: &Case, path: &Path, state: &RunState) -> Result<Vec<String>, RestartError> {
     let (mut problem, stepping) = case.differences_from_saved(&state.options);
@@ -172,6 +178,20 @@ fn compare(case: &Case, path: &Path, state: &RunState) -> Result<Vec<String>, Re
             value: path(Some(&case.material.hardening_file)),
             reference: path(state.options.get("hardening_file")),
         });
+    }
+    let now = tool_checksums(case);
+    let paths: BTreeMap<&str, String> = case.options().into_iter().collect();
+    for (index, option) in ["die_profile", "punch_profile"].into_iter().enumerate() {
+        if state.tools[index] != now[index] {
+            let path = |path: Option<&String>| {
+                format!("the outline of {}", path.map_or("benchmark", |path| path))
+            };
+            problem.push(Difference {
+                option,
+                value: path(paths.get(option)),
+                reference: path(state.options.get(option)),
+            });
+        }
     }
     let list = |differences: &[Difference]| {
         let one = |d: &Difference| format!("-{} was {} and is {}", d.option, d.reference, d.value);

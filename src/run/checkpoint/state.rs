@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::derivatives;
 use crate::output::{Arrays, OutputError};
+use crate::ranks::rows;
 use crate::run::ledger::{Counts, LEDGER_NUMBERS};
 use crate::run::springback::Springback;
 use crate::sensitivity::Kept;
@@ -16,6 +17,8 @@ pub(in crate::run) struct RunState {
     pub options: BTreeMap<String, String>,
     /// Checksum of the hardening curve.
     pub hardening: u32,
+    /// Checksums of the outlines of die and punch.
+    pub tools: [u32; 2],
     /// The program that wrote it.
     pub revision: String,
     /// Time of the step, ms.
@@ -55,6 +58,7 @@ impl RunState {
             .collect();
         to.put_text("options", &options.concat())?;
         to.put("hardening", &[self.hardening])?;
+        to.put("tools", &self.tools)?;
         to.put_text("revision", &self.revision)?;
         to.put("unknowns", &self.unknowns)?;
         let (before, last_dt) = match &self.before {
@@ -101,6 +105,11 @@ impl RunState {
         let [wanted] = from.get_exactly("wanted_dt")?;
         let [calm] = from.get_exactly::<u64, 1>("calm_steps")?;
         let [hardening] = from.get_exactly("hardening")?;
+        // Before there were tools from files there was no other checksum.
+        let tools = match from.has("tools") {
+            true => from.get_exactly("tools")?,
+            false => [0; 2],
+        };
         let [time] = from.get_exactly("time")?;
         let springbacks: Vec<f64> = from.get("springbacks")?;
         Ok(Self {
@@ -110,6 +119,7 @@ impl RunState {
                 .map(|(name, value)| (name.to_owned(), value.to_owned()))
                 .collect(),
             hardening,
+            tools,
             revision: from.get_text("revision")?,
             time,
             unknowns: from.get("unknowns")?,
@@ -129,7 +139,7 @@ impl RunState {
                 refused,
                 newton,
             },
-            springbacks: springbacks.as_chunks().0.iter().map(springback).collect(),
+            springbacks: rows(&springbacks).iter().map(springback).collect(),
             spent: from.get_exactly("spent")?,
             file_rows: [from.get("node_of_row")?, from.get("contact_point_of_row")?],
             derivatives: derivatives::get(from)?,

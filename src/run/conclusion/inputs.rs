@@ -7,8 +7,8 @@ use sha2::{Digest, Sha256};
 
 use crate::case::Case;
 
-/// SHA-256 of the option files of the command line and of the hardening table by file name, and of all options in
-/// effect but the output folder. Folders are left out: they say where, not what. Files read before may be gone by now:
+/// SHA-256 of the option files of the command line, of the hardening table and of the tools by file name, and of all
+/// options in effect but the output folder. Folders are left out: they say where, not what. Files read before may be gone by now:
 /// then they are left out, too.
 pub(super) fn checksums(case: &Case) -> BTreeMap<String, String> {
     let words: Vec<String> = std::env::args().collect();
@@ -18,6 +18,8 @@ pub(super) fn checksums(case: &Case) -> BTreeMap<String, String> {
         .map(|pair| pair[1].strip_suffix(":yaml").unwrap_or(&pair[1]).to_owned())
         .collect();
     files.push(case.material.hardening_file.clone());
+    let tools = [&case.tools.die_file, &case.tools.punch_file];
+    files.extend(tools.into_iter().flatten().map(|file| file.path.clone()));
     let mut sums: BTreeMap<String, String> = files
         .iter()
         .filter_map(|path| {

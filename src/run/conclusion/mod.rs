@@ -13,6 +13,7 @@ use petsc::Session;
 
 use super::error::RunError;
 use super::outcome::Outcome;
+use super::recorder::right_halves;
 use super::setup::unread;
 use crate::case::Case;
 use crate::output::Report;
@@ -73,6 +74,7 @@ pub fn conclude(
             summary: &summary,
             records: &records,
             reference: &reference,
+            tools: right_halves([Some(&case.die()), Some(&case.punch())]),
         };
         report.write(&folder)?;
     }

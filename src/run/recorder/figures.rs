@@ -1,10 +1,9 @@
 //! The figures of the sheet and the tools, from the model to the files.
 
-use std::sync::Arc;
-
 use crate::output::plot::{self, DeformedElement, Shape};
 use crate::output::{OutputDir, OutputError};
 use crate::system::{Problem, Tool};
+use crate::tool::Profile;
 
 /// Spacing of the points of the drawn tools, mm: a figure is looked at closer than the fields.
 const TOOL_SPACING: f64 = 0.05;
@@ -20,7 +19,9 @@ pub(super) fn shape(
     elements: &[DeformedElement],
     problem: &Problem,
 ) -> Result<(), OutputError> {
-    let (die, punch) = right_halves(problem);
+    let tools = [&problem.lower_tool, &problem.upper_tool];
+    let profiles = tools.map(|tool| tool.as_ref().map(|tool| &tool.profile));
+    let [die, punch] = right_halves(profiles);
     let nodes = &problem.mesh.nodes;
     let sheet = [0, 1].map(|k| nodes.iter().map(|x| x[k]).fold(0.0, f64::max));
     let figure = Shape {
@@ -35,18 +36,15 @@ pub(super) fn shape(
 }
 
 /// The right halves of die and punch in their first positions, from the axis outwards, mm.
-pub(in crate::run) fn right_halves(problem: &Problem) -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
-    let right_half = |tool: &Option<Arc<Tool>>| -> Vec<[f64; 2]> {
-        let points = outline(tool.as_deref(), TOOL_SPACING);
+pub(in crate::run) fn right_halves(tools: [Option<&Profile>; 2]) -> [Vec<[f64; 2]>; 2] {
+    let [die, mut punch] = tools.map(|tool| {
+        let mut points = tool.map_or_else(Vec::new, |tool| tool.polyline(TOOL_SPACING));
+        points.retain(|point| point[0] > -1e-9);
         points
-            .into_iter()
-            .filter(|point| point[0] > -1e-9)
-            .collect()
-    };
-    let mut punch = right_half(&problem.upper_tool);
+    });
     // The punch is walked from its side to its tip.
     punch.reverse();
-    (right_half(&problem.lower_tool), punch)
+    [die, punch]
 }
 
 /// Outline of a tool in its first position, with `spacing` (mm) between points.

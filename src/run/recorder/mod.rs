@@ -209,7 +209,7 @@ impl Recorder {
 
     /// Whether the fields of the last step are due; the ends of loading and unloading always are.
     pub fn fields_due(&self, is_end: bool) -> bool {
-        is_end || (self.every > 0 && self.records.len().is_multiple_of(self.every))
+        is_end || (self.every > 0 && self.records.len() % self.every == 0)
     }
 
     /// Writes the fields at time `t` (ms). Collective.

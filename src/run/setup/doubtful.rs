@@ -65,10 +65,11 @@ pub(super) fn value(name: &str) -> petsc::Result<Option<String>> {
 pub(in crate::run) fn given() -> petsc::Result<Vec<(String, &'static str)>> {
     let mut found = Vec::new();
     for doubtful in DOUBTFUL {
-        if let Some(value) = value(doubtful.option)?
-            && !doubtful.harmless.contains(&value.as_str())
-            && !linear::is_default(doubtful.option, Some(&value))
-        {
+        let harmful = |value: &String| {
+            !doubtful.harmless.contains(&value.as_str())
+                && !linear::is_default(doubtful.option, Some(value))
+        };
+        if let Some(value) = value(doubtful.option)?.filter(harmful) {
             let option = format!("-{} {value}", doubtful.option);
             found.push((option, doubtful.effect));
         }

@@ -108,10 +108,10 @@ const FORBIDDEN: &[Forbidden] = &[
 /// Which one, why, and what to do.
 pub(super) fn refuse(ranks: i32) -> Result<(), RunError> {
     for forbidden in FORBIDDEN {
-        if let Some(given) = value(forbidden.option)?
-            && forbidden.values.contains(&given.as_str())
-            && !(forbidden.alone && ranks == 1)
-        {
+        let cannot_work = |given: &String| {
+            forbidden.values.contains(&given.as_str()) && !(forbidden.alone && ranks == 1)
+        };
+        if let Some(given) = value(forbidden.option)?.filter(cannot_work) {
             return Err(CaseError::Reserved {
                 option: forbidden.option.to_owned(),
                 given,

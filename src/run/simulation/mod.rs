@@ -18,7 +18,7 @@ use std::rc::Rc;
 use petsc::{Alpha2State, Ts, TsReason};
 
 use super::RunError;
-use super::checkpoint::{Resumed, RunState, hardening_checksum};
+use super::checkpoint::{Resumed, RunState, hardening_checksum, tool_checksums};
 use super::diagnosis::Refusal;
 use super::ledger::{Counts, Spent};
 use super::outcome::SensitivityEnd;
@@ -191,6 +191,7 @@ fn identity(case: &Case) -> RunState {
             .map(|(name, value)| (name.to_owned(), value))
             .collect(),
         hardening: hardening_checksum(case),
+        tools: tool_checksums(case),
         revision: env!("SSNP155_REVISION").to_owned(),
         ..RunState::default()
     }

@@ -12,14 +12,18 @@ const FAR = 10 * model.half_length, MARGIN = model.half_length / 20;
 // A colour of the style sheet, which a canvas does not know by its name.
 const tone = name => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
+// Both tools from left to right; their last lines go straight on.
 const outlines = (() => {
-  const arc = (cx, cy, r, from, to) => Array.from({ length: 1501 }, (_, k) => { const a = from + (to - from) * k / 1500; return [cx + r * Math.cos(a), cy + r * Math.sin(a)]; });
-  const { die_radius: R, shoulder_radius: r, punch_radius: p, thickness: h } = model, edge = R + r, q = Math.PI / 2;
-  const half = [...arc(0, -r, R, -q, 0), ...arc(edge, -r, r, 2 * q, q), [edge + FAR, 0]];
-  const punch = [...arc(0, h + p, p, -q, 0), [p, h + p + FAR]];
+  const onward = line => {
+    const [[x0, y0], [x1, y1]] = line.slice(-2), far = FAR / Math.hypot(x1 - x0, y1 - y0);
+    return [...line, [x1 + far * (x1 - x0), y1 + far * (y1 - y0)]];
+  };
   const whole = line => [...line.slice().reverse().map(([x, y]) => [-x, y]), ...line];
-  return { die: whole(half), punch: whole(punch) };
+  return { die: whole(onward(model.die)), punch: whole(onward(model.punch)) };
 })();
+// How deep the die is to be shown, and from where on it holds the sheet.
+const dieDepth = Math.min(Math.max(...model.die.map(point => -point[1])), model.half_length);
+const dieEdge = (model.die.find(point => point[1] > -1e-6) || [model.half_length])[0];
 
 // Edges of one element only: the outline of the sheet, without the plane of symmetry.
 const outline = (() => {
@@ -133,7 +137,7 @@ const lowest = (() => { let best = 0; for (let n = 1; n < states.nodes; n++) { c
 
 // The whole picture: the right half and a little of the left one, the same for all states.
 function wholeBox(width, height) {
-  const [, x1, y0, y1] = states.span, low = Math.min(y0, -model.die_radius - model.shoulder_radius) - MARGIN, high = Math.max(y1, 4 * MARGIN) + MARGIN;
+  const [, x1, y0, y1] = states.span, low = Math.min(y0, -dieDepth) - MARGIN, high = Math.max(y1, 4 * MARGIN) + MARGIN;
   const left = -0.14 * x1, right = x1 + MARGIN;
   return [(left + right) / 2, (low + high) / 2, Math.max((right - left) / width, (high - low) / height)];
 }
@@ -159,9 +163,9 @@ function drawSheet(printing) {
   c.strokeStyle = tone("frame"); c.lineWidth = 1.4;
   c.strokeRect(wholeView.X(fx - hw), wholeView.Y(fy + hh), 2 * hw * wholeView.k, 2 * hh * wholeView.k);
   c.fillStyle = tone("soft"); c.font = "13px sans-serif"; c.textAlign = "left";
-  c.fillText("die", wholeView.X(Math.min(model.die_radius + model.shoulder_radius + MARGIN, box[0] + 0.4 * a.width * box[2])), a.height - 14);
+  c.fillText("die", wholeView.X(Math.min(dieEdge + MARGIN, box[0] + 0.4 * a.width * box[2])), a.height - 14);
   const tip = model.thickness - depth(states.times[look.state]);
-  if (wholeView.Y(tip) > 34) c.fillText("punch", wholeView.X(1.2), Math.max(wholeView.Y(tip + 0.6 * model.punch_radius), 22));
+  if (wholeView.Y(tip) > 34) c.fillText("punch", wholeView.X(1.2), Math.max(wholeView.Y(tip + 0.24 * model.half_length), 22));
   bar(a, box); bar(b, close);
   const at = `at a stroke of ${fixed(depth(states.times[look.state]), 2)} mm`;
   canvas.setAttribute("aria-label", `The sheet between punch and die ${at}, coloured by ${states.fields[look.field].name}`);

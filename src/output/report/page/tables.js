@@ -64,7 +64,10 @@ function provenanceTables() {
 function header() {
   const failing = summary.verdicts.filter(v => v.verdict !== "holds").length, done = summary.status === "finished";
   const compared = summary.verdicts.some(v => v.source !== "certificate of every step");
-  document.getElementById("title").textContent = "NAFEMS contact benchmark 3 · SSNP155";
+  // Other tools are another problem, whatever the rest is.
+  const files = ["punch_profile", "die_profile"].map(name => summary.provenance.options[name]).filter(path => path && path !== "benchmark");
+  document.getElementById("title").textContent = files.length
+    ? `Sheet between tools from ${files.map(path => path.split("/").pop()).join(" and ")}` : "NAFEMS contact benchmark 3 · SSNP155";
   const differs = Object.entries(summary.provenance.options).filter(([n, v]) => data.defaults[n] !== v);
   document.getElementById("subtitle").textContent = `${model.friction > 0 ? `With friction, coefficient ${show(model.friction)}` : "Without friction"}; stroke ${show(model.stroke)} mm, `
     + `${model.unload_fraction > 0 ? `${show(100 * model.unload_fraction)} % of it back` : "not taken back"}; ${model.elements[0]} × ${model.elements[1]} quadratic elements`

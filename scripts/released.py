@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+"""How far the angle after release depends on mesh, integration, steps, contact and mass: one thing changed at a time.
+
+  scripts/released.py [OPTION ...]                                 without friction
+  scripts/released.py -friction_coefficient 0.1342 [OPTION ...]    with friction
+
+The base is inputs/released.opts. Without friction the tools vanish at full stroke, and the way back is left out: it changes
+nothing. With friction the punch goes all the way out, and the sheet yields again on that way. OPTIONS go to every run
+after those of the base, before what a run changes. Tables are Markdown on standard output. The program is
+target/release/ssnp155, or $SSNP155. Results stay in results-released-study/; with REUSE=1 a run that is there is not made again,
+and with ONLY=WORD,WORD only the base and the runs named WORD or WORD-... are made.
+"""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PROGRAM = os.environ.get("SSNP155", str(ROOT / "target/release/ssnp155"))
+RESULTS = ROOT / "results-released-study"
+BASE = ["-options_file", "inputs/fastest.opts", "-options_file", "inputs/released.opts"]
+LOADING = ["-unload_fraction", "0"]
+WITHDRAWN = ["-unload_fraction", "1", "-time_unload", "1000"]
+POINTS = "-contact_points_per_edge"
+
+
+def mesh(nx, ny):
+    return ["-sheet_nx", str(nx), "-sheet_ny", str(ny)]
+
+
+def through(points):
+    return ["-quadrature_thickness", str(points)]
+
+
+# Name, what it is, and the changed options, in the order of the table.
+CHANGES = [("base", "inputs/released.opts", [])]
+CHANGES += [(f"step-{dt}", f"longest step {dt} ms", ["-dt_max", dt]) for dt in ("8.5", "8", "7.5", "7", "6.5", "6", "4.5", "2.25")]
+CHANGES += [
+    ("points-5", "5 Gauss points through each element", through(5)),
+    ("points-10", "10 Gauss points through each element", through(10)),
+    ("points-15", "15 Gauss points through each element", through(15)),
+    ("along-3", "3 Gauss points along each element", ["-quadrature", "3"]),
+    ("mesh-170-3", "170 x 3 elements, 10 points through each", [*mesh(170, 3), *through(10)]),
+    ("mesh-170-6", "170 x 6 elements, 5 points through each", [*mesh(170, 6), *through(5)]),
+    ("mesh-170-8", "170 x 8 elements, 4 points through each", [*mesh(170, 8), *through(4)]),
+    ("mesh-120-4", "120 x 4 elements, 17 contact points", [*mesh(120, 4), POINTS, "17"]),
+    ("mesh-240-4", "240 x 4 elements, 8 contact points", [*mesh(240, 4), POINTS, "8"]),
+    ("mesh-340-4", "340 x 4 elements, 6 contact points", [*mesh(340, 4), POINTS, "6"]),
+    ("contact-9", "9 contact points", [POINTS, "9"]),
+    ("contact-16", "16 contact points", [POINTS, "16"]),
+    ("contact-20", "20 contact points", [POINTS, "20"]),
+    ("contact-24", "24 contact points", [POINTS, "24"]),
+    ("closest", "contact at the closest points", ["-contact_location", "closest"]),
+    ("compliance-half", "half the contact compliance", ["-contact_compliance", "2.5e-5"]),
+    ("compliance-twice", "twice the contact compliance", ["-contact_compliance", "1e-4"]),
+    ("density-tenth", "a tenth of the density", ["-density", "2.7e-4"]),
+    ("density-tenfold", "ten times the density", ["-density", "2.7e-2"]),
+    ("static", "no mass", ["-dynamics", "none"]),
+]
+FRICTION_CHANGES = [
+    ("slip-half", "half the friction compliance", ["-friction_compliance", "2.5e-4"]),
+    ("slip-twice", "twice the friction compliance", ["-friction_compliance", "1e-3"]),
+]
+
+
+def run(name, options):
+    """The summary of one run."""
+    folder = RESULTS / name
+    if not (os.environ.get("REUSE") and (folder / "summary.json").exists()):
+        print("run:", name, *options, file=sys.stderr, flush=True)
+        command = [PROGRAM, *options, "-output_every", "0", "-overwrite", "-output_dir", str(folder)]
+        subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL, check=False)
+    try:
+        return json.loads((folder / "summary.json").read_text())
+    except OSError:
+        sys.exit(f"released: no summary from run {name}")
+
+
+def angles(summary):
+    """Loaded, tools vanished and withdrawn, degrees; none where the run did not get there."""
+    found = summary["angles_deg"]
+    vanish = next((angle for name, angle in found.items() if name.startswith("tools vanish at 28.5")), None)
+    back = float(summary["provenance"]["options"]["unload_fraction"]) == 1.0 and summary["status"] == "finished"
+    return [found.get("full stroke"), vanish, found.get("end of the motion") if back else None]
+
+
+def show(value, digits=3):
+    return "-" if value is None else f"{value:.{digits}f}"
+
+
+def difference(value, base):
+    return "-" if value is None or base is None else f"{value - base:+.3f}"
+
+
+def main(extra):
+    if {"-h", "--help"} & set(extra):
+        sys.exit(__doc__)
+    friction = "-friction_coefficient" in extra
+    way = WITHDRAWN if friction else LOADING
+    only = [word for word in os.environ.get("ONLY", "").split(",") if word]
+    heads = ["what", "loaded", "tools vanish", "withdrawn", "to the base", "steps", "refused", "iterations"]
+    print("| " + " | ".join(heads) + " |\n" + "|" + "---|" * len(heads))
+    base = None
+    for name, what, changed in CHANGES + (FRICTION_CHANGES if friction else []):
+        if only and name != "base" and not any(name == word or name.startswith(f"{word}-") for word in only):
+            continue
+        summary = run(("friction-" if friction else "") + name, [*BASE, *way, *extra, *changed])
+        loaded, vanish, withdrawn = angles(summary)
+        released = withdrawn if friction else vanish
+        base = released if name == "base" else base
+        counts = summary["counts"]
+        cells = [what, show(loaded), show(vanish), show(withdrawn), difference(released, base), str(counts["steps"]),
+                 str(counts["refused_solves"]), str(counts["newton_iterations"])]
+        print("| " + " | ".join(cells) + " |", flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
