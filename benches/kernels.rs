@@ -2,6 +2,9 @@
 //!
 //! docs/performance.md compares the elements per second with what the processor could do.
 
+// The functions that criterion's macros make have no words.
+#![allow(missing_docs)]
+
 #[path = "../tests/common/mod.rs"]
 mod common;
 
