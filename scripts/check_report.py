@@ -4,8 +4,10 @@
     scripts/check_report.py FOLDER [PICTURE.png]      (needs: chromium, chromium-driver, pip install selenium)
 
 Loads FOLDER/report.html in headless Chromium and checks that nothing is asked from the network, no error is logged, the
-slider (by arrow key, too), the play button and the switches change the picture, everything fits widths from 900 to 1600
-pixels, and a failed run says so on top. Writes a picture of the page if asked. Exit code 0 if all is well.
+slider (by arrow key, too), the play button and the switches change the picture, everything fits widths from 390 to 1600
+pixels, in light and dark every text has the contrast of WCAG AA, every control has a name and can be reached by the
+keyboard, pictures have a text, the page prints, and a failed run says so on top. FOLDER may hold a comparison.html instead.
+Writes a picture of the page if asked. Exit code 0 if all is well.
 """
 
 import hashlib
@@ -76,17 +78,80 @@ def use(browser):
 
 
 def fits(browser):
-    for width in (900, 1280, 1600):
-        browser.set_window_size(width, 1000)
+    for width in (390, 768, 900, 1280, 1600):
+        metrics = {"width": width, "height": 1000, "deviceScaleFactor": 1, "mobile": width < 500}
+        browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
         time.sleep(0.3)
         wide = browser.execute_script("return [document.documentElement.scrollWidth, window.innerWidth]")
         expect(wide[0] <= wide[1], f"the page is {wide[0]} pixels wide in a window of {wide[1]}")
+
+
+# Ratios of contrast (WCAG 2.1, 1.4.3): 4.5, or 3 for large text. A text is where an element has some of its own.
+CONTRAST = """
+const rgb = text => text.match(/[\\d.]+/g).map(Number);
+const light = ([r, g, b]) => { const f = c => (c /= 255) <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4; return 0.2126 * f(r) + 0.7152 * f(g) + 0.0722 * f(b); };
+const over = e => { for (; e; e = e.parentElement) { const c = rgb(getComputedStyle(e).backgroundColor); if (c.length < 4 || c[3] > 0.99) return c; } return arguments[0] ? [20, 24, 30] : [255, 255, 255]; };
+const low = [];
+for (const e of document.querySelectorAll("body *")) {
+  if (![...e.childNodes].some(n => n.nodeType === 3 && n.textContent.trim()) || !e.getClientRects().length || e.closest("noscript, script, style")) continue;
+  const style = getComputedStyle(e), ink = rgb(e instanceof SVGElement ? style.fill : style.color), a = light(ink), b = light(over(e));
+  const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05), size = parseFloat(style.fontSize), large = size >= 24 || size >= 18.66 && style.fontWeight >= 700;
+  if (ratio < (large ? 3 : 4.5)) low.push(`${e.tagName.toLowerCase()} "${e.textContent.trim().slice(0, 40)}": ${ratio.toFixed(2)}`);
+}
+return [...new Set(low)];
+"""
+# Controls and pictures without a name, headings that leave out a level, and identities that are there twice.
+NAMES = """
+const named = e => (e.getAttribute("aria-label") || e.labels?.length && e.labels[0].textContent || e.textContent || "").trim();
+const wrong = [];
+for (const e of document.querySelectorAll("button, input, select, summary, [tabindex='0'], [role=img], canvas:not([aria-hidden]), table")) if (!named(e)) wrong.push(`${e.tagName.toLowerCase()}#${e.id} has no name`);
+let level = 0;
+for (const h of document.querySelectorAll("h1, h2, h3, h4")) { const l = Number(h.tagName[1]); if (l > level + 1) wrong.push(`h${l} behind h${level}`); level = l; }
+const ids = [...document.querySelectorAll("[id]")].map(e => e.id);
+ids.filter((id, i) => ids.indexOf(id) !== i).forEach(id => wrong.push(`#${id} is there twice`));
+for (const th of document.querySelectorAll("th")) if (!th.textContent.trim()) wrong.push("a column has no heading");
+if (!document.documentElement.lang || !document.title || !document.querySelector("main")) wrong.push("language, title or main part is missing");
+return wrong;
+"""
+
+
+def accessible(browser):
+    for scheme in ("dark", "light"):
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
+        time.sleep(0.2)
+        for text in browser.execute_script(CONTRAST, scheme == "dark"):
+            PROBLEMS.append(f"too little contrast ({scheme}): {text}")
+    for text in browser.execute_script(NAMES):
+        PROBLEMS.append(text)
+    # With the keyboard alone every control is reached, and shows that it is.
+    wanted = set(browser.execute_script("return [...document.querySelectorAll('button, select, input, summary')].filter(e => e.getClientRects().length && e.type !== 'radio').map(e => e.id || e.tagName)"))
+    body = browser.find_element(By.TAG_NAME, "body")
+    reached = set()
+    for _ in range(60):
+        body.send_keys(Keys.TAB)
+        seen = browser.execute_script("const e = document.activeElement; return [e.id || e.tagName, getComputedStyle(e).outlineStyle]")
+        reached.add(seen[0])
+        expect(seen[0] == "BODY" or seen[1] != "none", f"{seen[0]} does not show that it has the keyboard")
+        body = browser.switch_to.active_element
+    expect(wanted <= reached, f"the keyboard does not reach {sorted(wanted - reached)}")
+
+
+def prints(browser):
+    page = browser.execute_cdp_cmd("Page.printToPDF", {"printBackground": True, "paperWidth": 8.27, "paperHeight": 11.69})
+    expect(len(page["data"]) > 50_000, "the page prints as next to nothing")
+    browser.execute_script("window.dispatchEvent(new Event('beforeprint'))")
+    paper = browser.execute_script("return getComputedStyle(document.documentElement).getPropertyValue('--page').trim()")
+    browser.execute_script("window.dispatchEvent(new Event('afterprint'))")
+    expect(paper == "#fff", f"the page prints on {paper}")
 
 
 def says(browser, summary):
     status = browser.find_element(By.ID, "status").text
     if summary["status"] == "finished":
         expect("FINISHED" in status, f"the status says {status!r}")
+    elif summary["status"] == "interrupted":
+        expect("INTERRUPTED" in status, f"the status says {status!r}")
+        expect("-restart" in browser.find_element(By.ID, "failure").text, "the page does not say how to go on")
     else:
         expect("FAILED" in status, f"the status says {status!r}")
         failure = browser.find_element(By.ID, "failure").text
@@ -117,24 +182,30 @@ def main():
         print(__doc__)
         return 0 if sys.argv[1:] in (["-h"], ["--help"]) else 2
     folder = Path(sys.argv[1]).resolve()
-    summary = json.loads((folder / "summary.json").read_text())
+    report = folder / "report.html"
+    if not report.exists():
+        report = folder / "comparison.html"
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         browser = open_browser(profile)
         try:
-            page = (folder / "report.html").as_uri()
+            page = report.as_uri()
             browser.get(page)
-            says(browser, summary)
+            if report.name == "report.html":
+                says(browser, json.loads((folder / "summary.json").read_text()))
             if len(sys.argv) == 3:
                 browser.save_screenshot(sys.argv[2])
-            use(browser)
+            if report.name == "report.html":
+                use(browser)
+            accessible(browser)
             fits(browser)
+            prints(browser)
             logged(browser, page)
         finally:
             browser.quit()
     for problem in PROBLEMS:
         print(f"report: {problem}", file=sys.stderr)
-    size = (folder / "report.html").stat().st_size / 1e6
-    print(f"report.html: {size:.1f} MB, {'as it should be' if not PROBLEMS else f'{len(PROBLEMS)} problem(s)'}")
+    size = report.stat().st_size / 1e6
+    print(f"{report.name}: {size:.1f} MB, {'as it should be' if not PROBLEMS else f'{len(PROBLEMS)} problem(s)'}")
     return 1 if PROBLEMS else 0
 
 

@@ -54,6 +54,11 @@ add(SCREEN, "standard error closed", f"{RUN} 2>&-")
 add(SCREEN, "standard input closed", f"{RUN} <&-", both=True)
 add(SCREEN, "a pipe behind mpirun, kept open by tee", f"{RUN} | tee -p /dev/null | head -1; exit ${{PIPESTATUS[0]}}", ranks=2)
 
+add(SCREEN, "quiet", f"{RUN} -quiet")
+add(SCREEN, "quiet, and nothing to say", f"{RUN} -quiet | grep -c ms; [ $(grep -c ms DIR/run.log) -gt 0 ]", says="all 8 hold", fast=True)
+add(SCREEN, "no line beyond 80 columns, and no colour", f"{RUN} -monitor_iterations -pc_factor_levels 2 | tee out; "
+    "! grep -P '.{81}|\\x1b' out", fast=True)
+
 SIGNALS = "Signals and limits"
 
 
@@ -124,6 +129,9 @@ add(AROUND, "more ranks than cores", RUN, ranks=7)
 add(AROUND, "as many ranks as elements", f"{RUN} -sheet_nx 2 -sheet_ny 2 -contact_points_per_edge 8", 1, "verdict",
     ranks=4)
 add(AROUND, "more ranks than elements", f"{RUN} -sheet_nx 2 -sheet_ny 1", 2, "too many MPI ranks: 3", NOTHING, ranks=3)
+add(AROUND, "too little address space for the BLAS", f"ulimit -v 300000; {RUN}", 2, "a limit on memory .* leaves less than 192 MB",
+    "!history.csv", fast=True)
+add(AROUND, "enough address space", f"ulimit -v 2000000; {RUN}")
 add(AROUND, "a name with a blank and umlauts", f"RUN {SMALL} -output_dir 'DIR/Blech für März'", files="Blech*/summary.json")
 add(AROUND, "the longest path there can be", f"RUN {SMALL} -output_dir DIR/$(printf 'x%.0s' {{1..300}})", 2,
     "cannot create the output folder .*File name too long", NOTHING)
@@ -186,9 +194,11 @@ option("GMRES around our solve", "-ksp_type gmres", both=True)
 option("PETSc's signal handlers", "-no_signal_handler 0")
 option("the Jacobian against differences", "-snes_test_jacobian")
 option("an old Jacobian", "-snes_lag_jacobian 2")
-option("a loose tolerance", "-snes_atol 1e-3")
-option("a relative tolerance", "-snes_rtol 1e-2")
-option("a tolerance on the step", "-snes_stol 1e-2")
+option("a loose tolerance", "-snes_atol 1e-3", 1, "but 2 verdicts do not hold", fast=True)
+option("a relative tolerance", "-snes_rtol 1e-2", 1, "verdicts? do(es)? not hold")
+option("a tolerance on the step", "-snes_stol 1e-2", says="-snes_stol has no effect")
+option("our own loose tolerance", "-newton_tolerance 1e-5", 1, "verdicts? do(es)? not hold")
+option("no convergence test", "-snes_convergence_test skip -newton_max_iterations 2", 1, "verdicts? do(es)? not hold|FAILED", fast=True)
 option("one iteration", "-snes_max_it 1 -dt_min 0.05", 1, "FAILED")
 option("a limit on evaluations", "-snes_max_funcs 2 -dt_min 0.05", 1, "FAILED", "leave out -snes_max_funcs 2")
 option("one step", "-ts_max_steps 1", 1, "FAILED")
@@ -208,3 +218,19 @@ option("a package that is not there", "-pc_type lu -pc_factor_mat_solver_type st
        both=True)
 option("a typing mistake in PETSc's option", "-snes_maxit 4", says="-snes_maxit 4 has no effect: PETSc did not read it", fast=True)
 option("vectors on a device that is not there", "-vec_type cuda", says="-vec_type cuda has no effect")
+option("the right-hand side's Jacobian, tested", "-ts_rhs_jacobian_test_mult", 2, f"{REFUSED}-ts_rhs_jacobian_test_mult: there is no right-hand", fast=True)
+option("monitors of fields", "-snes_monitor_fields", 2, f"{REFUSED}-snes_monitor_fields: it needs a grid")
+option("a graph without a display", "-ts_monitor_lg_timestep", 2, f"{REFUSED}-ts_monitor_lg_timestep: it draws", environment={"DISPLAY": ""})
+option("an error in place of a refused solve", "-snes_error_if_not_converged", 2, f"{REFUSED}-snes_error_if_not_converged: a solve that")
+option("a Jacobian by differences", "-snes_fd", 2, f"{REFUSED}-snes_fd: differences cannot follow")
+option("a tolerance of a direct solve", "-ksp_rtol 1e-2", says="-ksp_rtol has no effect as the solve is direct")
+option("a parameter of another line search", "-snes_linesearch_damping 0.5", says="-snes_linesearch_damping has no effect on the program's own")
+
+COMPARED = "Two runs side by side"
+for ranks in [1, 2]:
+    CASES.append(Case(COMPARED, "two runs", "RUN -compare DIR2,DIR3 -output_dir DIR", 0, "^$", "comparison.html !history.csv", "options that differ",
+                      ranks=ranks, fast=ranks == 1, before=(RUN.replace("DIR", "DIR2"), RUN.replace("DIR", "DIR3") + " -sheet_ny 1")))
+add(COMPARED, "a folder without a run", "RUN -compare DIR2,DIR3 -output_dir DIR", 2, "-compare: .* holds no run that has ended", NOTHING, fast=True)
+add(COMPARED, "a run that was killed", "RUN -compare DIR2,DIR2 -output_dir DIR", 2, "summary.json, a run's last file, is not there", NOTHING,
+    before=("mkdir DIR2; touch DIR2/history.csv",))
+add(COMPARED, "one folder", "RUN -compare DIR2", 2, f"{REFUSED}-compare .*: these are not two paths", NOTHING)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Read the field files of a run the way ParaView does, and check that everything is there.
 
-    scripts/read_fields.py FOLDER        (needs: pip install vtk)
+    scripts/read_fields.py FOLDER...      (needs: pip install vtk)
 
 Opens fields.vtkhdf, tools.vtkhdf and contact.vtkhdf with VTK's own reader (vtkHDFReader), goes through all time steps
 and checks that every array is present, has the right number of components and is finite, and that states of contact are
@@ -145,13 +145,13 @@ class File:
 
 
 def main():
-    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
+    if len(sys.argv) < 2 or sys.argv[1].startswith("-"):
         print(__doc__)
         return 0 if sys.argv[1:] in (["-h"], ["--help"]) else 2
     vtkObject.GlobalWarningDisplayOff()
-    folder, failed = Path(sys.argv[1]), False
-    for name in EXPECTED:
-        file = File(folder / name)
+    failed = False
+    for path in [Path(folder) / name for folder in sys.argv[1:] for name in EXPECTED]:
+        file = File(path)
         file.check()
         for problem in file.problems:
             print(f"{file.path}: {problem}", file=sys.stderr)

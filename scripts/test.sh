@@ -22,11 +22,16 @@ echo "test: the fields, read back by VTK"
 .venv/bin/python -c 'import matplotlib, scipy, selenium, vtk' 2>/dev/null || .venv/bin/pip install --quiet --requirement scripts/requirements.txt
 .venv/bin/python scripts/read_fields.py results
 
-echo "test: the report in a browser, of this run and of one that fails"
+echo "test: the report in a browser, of this run, of one that fails, of one that is interrupted, and of two side by side"
 .venv/bin/python scripts/check_report.py results
 "${CARGO_TARGET_DIR:-target}/release/ssnp155" -sheet_nx 40 -sheet_ny 2 -newton_max_iterations 3 -dt_min 0.1 \
     -overwrite -output_dir results/failed >/dev/null && exit 1
 .venv/bin/python scripts/check_report.py results/failed
+"${CARGO_TARGET_DIR:-target}/release/ssnp155" -friction_coefficient 0.1342 -sheet_nx 85 -sheet_ny 3 -dt_max 0.5 -wall_limit 5 \
+    -overwrite -output_dir results/interrupted >/dev/null && exit 1
+.venv/bin/python scripts/check_report.py results/interrupted
+"${CARGO_TARGET_DIR:-target}/release/ssnp155" -compare results,results/failed -output_dir results/compared >/dev/null
+.venv/bin/python scripts/check_report.py results/compared
 
 echo "test: samples of studies, against closed values"
 .venv/bin/python -B scripts/check_studies.py results/check-studies

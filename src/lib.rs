@@ -18,3 +18,5 @@ pub mod sensitivity;
 pub mod system;
 mod text;
 pub mod tool;
+
+pub use {mpi, petsc};

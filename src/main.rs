@@ -15,7 +15,7 @@ use ssnp155::case::{
 };
 use ssnp155::inverse;
 use ssnp155::ranks::lowest_failing;
-use ssnp155::run::{Ending, conclude, simulate};
+use ssnp155::run::{Ending, compare, conclude, simulate};
 
 /// What PETSc is told before the user's options: no signal handlers, and no words about options at its end.
 const PETSC_ARGUMENTS: [&str; 3] = ["-no_signal_handler", "-options_left", "no"];
@@ -56,6 +56,9 @@ fn program(world: &SimpleCommunicator) -> Result<Ending, Refused> {
         world,
         check_ranks(world.size().unsigned_abs() as usize, &case),
     )?;
+    if let Some(pair) = &case.output.compare {
+        return agree(world, compare(&case, pair, world)).map(|()| Ending::Holds);
+    }
     if case.inverse.is_asked() {
         return agree(world, inverse::solve(&case, &session, world));
     }

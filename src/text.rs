@@ -57,6 +57,53 @@ pub(crate) fn shortened(text: &str) -> String {
     }
 }
 
+/// Columns of a terminal that everything shown fits.
+pub(crate) const COLUMNS: usize = 80;
+
+/// Breaks each line at spaces; a word longer than a line stays whole.
+pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = Vec::new();
+    for paragraph in text.lines() {
+        let mut line = String::new();
+        for word in paragraph.split_whitespace() {
+            if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > width {
+                lines.push(std::mem::take(&mut line));
+            }
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line.push_str(word);
+        }
+        lines.push(line);
+    }
+    lines
+}
+
+/// The text with its lines as they are, but those that are too long for a terminal broken; what follows is set in by two
+/// columns more than the line begins with.
+pub(crate) fn fitted(text: &str) -> String {
+    let mut fits = String::with_capacity(text.len());
+    for line in text.split_inclusive('\n') {
+        let plain = line.trim_end_matches('\n');
+        if plain.chars().count() <= COLUMNS {
+            fits.push_str(line);
+            continue;
+        }
+        let indent = plain.chars().take_while(|&c| c == ' ').count();
+        let broken = wrapped(plain, COLUMNS.saturating_sub(indent + 2).max(20));
+        for (index, part) in broken.iter().enumerate() {
+            let indent = if index == 0 { indent } else { indent + 2 };
+            let end = if index + 1 < broken.len() {
+                "\n"
+            } else {
+                &line[plain.len()..]
+            };
+            fits.push_str(&format!("{:indent$}{part}{end}", ""));
+        }
+    }
+    fits
+}
+
 /// A number of bytes for people.
 pub(crate) fn size(bytes: u64) -> String {
     match bytes {
@@ -105,6 +152,18 @@ pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn long_lines_are_broken_and_set_in() {
+        let long = "word ".repeat(40);
+        let text = fitted(&format!("  short   line\n  {long}\nno end"));
+        assert!(text.starts_with("  short   line\n  word word"));
+        assert!(text.ends_with("word\nno end"));
+        assert!(text.lines().all(|line| line.chars().count() <= COLUMNS));
+        assert!(text.lines().nth(2).unwrap().starts_with("    word"));
+        assert_eq!(text.matches("word").count(), 40);
+        assert_eq!(fitted(&"x".repeat(90)), "x".repeat(90));
+    }
 
     #[test]
     fn numbers_keep_six_digits() {

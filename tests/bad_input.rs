@@ -138,7 +138,7 @@ fn neither_a_mistake_nor_a_question_touches_an_earlier_run() {
     let help = run(2, PATIENCE, &["-output_dir", folder, "-help"]);
     assert_eq!(help.code, Some(0), "{}", help.stderr);
     for option in ["-sheet_nx", "-snes_max_it", "-ts_max_steps"] {
-        assert!(help.stdout.contains(option), "{option}");
+        assert!(help.says(option), "{option}");
     }
     assert_eq!(std::fs::read_to_string(&history).unwrap(), "earlier");
     assert_eq!(std::fs::read_dir(Path::new(folder)).unwrap().count(), 1);
@@ -176,20 +176,16 @@ fn an_option_that_petsc_does_not_read_is_named_after_the_run() {
         "{}",
         ended.stdout
     );
-    assert!(ended.stdout.contains(warning), "{}", ended.stdout);
+    assert!(ended.says(warning), "{}", ended.stdout);
 }
 
 #[test]
 fn a_run_that_a_limit_ends_early_does_not_look_finished() {
     let ended = small(1, "bad-input-limit", "-ts_max_steps 1");
     assert_eq!(ended.code, Some(1), "{}", ended.text());
-    assert!(ended.stdout.contains("FAILED: the run did not finish"));
-    assert!(
-        ended
-            .stdout
-            .contains("the prescribed number of steps is done")
-    );
-    assert!(!ended.stdout.contains("FINISHED"));
+    assert!(ended.says("FAILED: the run did not finish"));
+    assert!(ended.says("the prescribed number of steps is done"));
+    assert!(!ended.says("FINISHED"));
 }
 
 #[test]

@@ -53,9 +53,9 @@ fn the_option_file_gives_every_option_its_reference_value_once() {
 }
 
 #[test]
-fn the_help_fits_a_terminal_of_100_columns_and_names_every_option() {
+fn the_help_fits_a_terminal_of_80_columns_and_names_every_option() {
     let help = help_text();
-    assert!(help.lines().all(|line| line.chars().count() <= 100));
+    assert!(help.lines().all(|line| line.chars().count() <= 80));
     for (name, _) in Case::reference().unwrap().options() {
         assert_eq!(help.matches(&format!("\n-{name} ")).count(), 1, "-{name}");
     }

@@ -13,7 +13,7 @@ fn check(name: &str, ranks: usize, more: &str) {
     );
     words.extend(more.split_whitespace());
     let ended = run(ranks, 120, &words);
-    assert!(ended.stdout.contains("FINISHED"), "{}", ended.text());
+    assert!(ended.says("FINISHED"), "{}", ended.text());
     let history = history(&folder);
     let rows = history["t_ms"].len();
     assert!(rows > 30, "{rows} steps");
@@ -44,4 +44,47 @@ fn every_step_of_a_static_run_on_two_ranks_is_certified() {
 #[test]
 fn every_step_of_a_run_with_friction_is_certified() {
     check("friction", 1, "-friction_coefficient 0.1342");
+}
+
+/// Runs a small case with these options, which change what is solved, and returns its exit code and whether it is called good.
+fn loosened(name: &str, more: &str) -> (Option<i32>, bool) {
+    let folder = scratch(&format!("certificate-{name}"));
+    let mut words = vec!["-output_dir", folder.to_str().unwrap()];
+    words.extend(
+        "-sheet_nx 20 -sheet_ny 2 -stroke 0.2 -time_load 6.4 -unload_fraction 0 -output_every 0 -dt_min 0.05"
+            .split(' '),
+    );
+    words.extend(more.split_whitespace());
+    let ended = run(1, 120, &words);
+    (ended.code, ended.says("every verdict holds"))
+}
+
+#[test]
+fn options_that_loosen_what_is_solved_never_end_with_every_verdict_holding() {
+    for (name, more) in [
+        ("atol", "-snes_atol 1e-3"),
+        ("atol-less", "-snes_atol 1e-6"),
+        ("rtol", "-snes_rtol 1e-2"),
+        ("own", "-newton_tolerance 1e-6"),
+        (
+            "skip",
+            "-snes_convergence_test skip -newton_max_iterations 2",
+        ),
+        ("iterations", "-snes_max_it 1"),
+        ("search", "-snes_linesearch_type bt"),
+    ] {
+        let (code, good) = loosened(name, more);
+        assert_eq!((code, good), (Some(1), false), "{more}");
+    }
+    // What changes the way and not the solution keeps its good end.
+    for (name, more) in [
+        ("none", ""),
+        ("lag", "-snes_lag_jacobian 2 -newton_max_iterations 60"),
+        // Without a test of convergence all twenty iterations are done, which leave less than the tolerance.
+        ("untested", "-snes_convergence_test skip"),
+        ("l2", "-snes_linesearch_type l2"),
+        ("lu", "-pc_type lu"),
+    ] {
+        assert_eq!(loosened(name, more), (Some(0), true), "{more}");
+    }
 }

@@ -22,7 +22,7 @@ fn the_model_is_told_and_drawn_and_nothing_else_is_written() {
             "down by 28.5 mm in 900 ms, back by 2.85 mm in 100 ms; with inertia",
             "yields at 194 MPa",
         ] {
-            assert!(ended.stdout.contains(part), "{part}: {}", ended.stdout);
+            assert!(ended.says(part), "{part}: {}", ended.stdout);
         }
         assert_eq!(ended.stdout.matches("dry run").count(), 1);
         // The last columns of the table, one row per rank.

@@ -53,7 +53,7 @@ fn works_are_in_balance(name: &str, ranks: usize, more: &str) {
     );
     words.extend(more.split_whitespace());
     let ended = run(ranks, 120, &words);
-    assert!(ended.stdout.contains("FINISHED"), "{}", ended.text());
+    assert!(ended.says("FINISHED"), "{}", ended.text());
     let history = history(&folder);
     let column = |name: &str| &history[name];
     let largest = |values: &[f64]| values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));

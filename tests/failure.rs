@@ -93,11 +93,11 @@ fn a_run_without_any_step_ends_too() {
     let ended = run(1, 60, &words);
     assert_eq!(ended.code, Some(1), "{}", ended.text());
     assert!(
-        ended.stdout.contains("after step 0, t = 0.0000 ms"),
+        ended.says("after step 0, t = 0.0000 ms"),
         "{}",
         ended.stdout
     );
-    assert!(ended.stdout.contains(" more ..."), "{}", ended.stdout);
+    assert!(ended.says(" more ..."), "{}", ended.stdout);
     assert!(
         ended.stdout.matches("#  tried").count() <= 4,
         "{}",
@@ -178,10 +178,6 @@ fn a_punch_that_passes_between_the_points_is_reported() {
             "{note}"
         );
         // Such a run may reach the end or not; the note stands in either banner.
-        assert!(
-            ended.stdout.contains("  note     A tool"),
-            "{}",
-            ended.stdout
-        );
+        assert!(ended.says("  note     A tool"), "{}", ended.stdout);
     }
 }

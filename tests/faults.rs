@@ -197,7 +197,7 @@ fn a_full_disk_is_an_error_that_leaves_what_was_there() {
             assert_eq!(last.len(), 1, "{}", ended.stderr);
             assert!(last[0].contains(folder.to_str().unwrap()), "{}", last[0]);
             assert!(last[0].contains(ADVICE), "{}", last[0]);
-            assert!(!ended.stdout.contains("FINISHED"), "{}", ended.stdout);
+            assert!(!ended.says("FINISHED"), "{}", ended.stdout);
             assert!(!folder.join("summary.json").exists());
             let found = checkpoints(&folder);
             assert_eq!(found.is_empty(), !checkpoint, "{size}, {ranks} ranks");

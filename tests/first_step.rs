@@ -35,11 +35,7 @@ fn the_first_step_is_easy_on_every_mesh_and_geometry() {
         );
         words.extend(variant.split_whitespace());
         let ended = run(1, 60, &words);
-        assert!(
-            ended.stdout.contains("FINISHED"),
-            "{variant}: {}",
-            ended.text()
-        );
+        assert!(ended.says("FINISHED"), "{variant}: {}", ended.text());
         let history = history(&folder);
         let (iterations, refused) = (
             history["newton_iterations"][0],

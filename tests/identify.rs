@@ -104,7 +104,7 @@ fn hidden_friction_and_strength_are_found_again_on_one_rank_and_on_two() {
             assert!(results.join(name).exists(), "{name}");
         }
         // The runs keep to their logs.
-        assert!(!ended.stdout.contains("Newton"), "{}", ended.stdout);
+        assert!(!ended.says("Newton"), "{}", ended.stdout);
         let values = found["parameters"].as_array().unwrap().iter();
         let near = |one: &serde_json::Value| {
             [
@@ -134,16 +134,8 @@ fn what_the_curve_cannot_tell_is_said() {
     let found = json(&folder.join("results/identification.json"));
     assert_eq!(found["parameters"][0]["identified"], true);
     assert_eq!(found["parameters"][1]["identified"], false);
-    assert!(
-        ended.stdout.contains("not determined: "),
-        "{}",
-        ended.stdout
-    );
-    assert!(
-        ended
-            .stdout
-            .contains("FINISHED, but not every verdict holds")
-    );
+    assert!(ended.says("not determined: "), "{}", ended.stdout);
+    assert!(ended.says("FINISHED, but not every verdict holds"));
 }
 
 #[test]
@@ -162,11 +154,7 @@ fn a_start_that_cannot_be_run_and_runs_that_are_used_up_are_said() {
     assert_eq!(ended.stderr.matches("ssnp155: ").count(), 1);
     let ended = program(1, &folder.join("short"), &format!("{search} -most_runs 1"));
     assert_eq!(ended.code, Some(1), "{}", ended.text());
-    assert!(
-        ended
-            .stdout
-            .contains("the runs that -most_runs allows are used up")
-    );
+    assert!(ended.says("the runs that -most_runs allows are used up"));
 }
 
 const DESIGN: &str = "-design 100 -stroke 17 -time_load 537 -design_refinement 1";
@@ -198,7 +186,7 @@ fn an_angle_out_of_reach_gets_the_nearest_one() {
     assert_eq!(found["found"], "out_of_reach");
     assert_eq!(found["best"]["values"][0].as_f64(), Some(17.5));
     assert!(
-        ended.stdout.contains("cannot be reached within the bounds"),
+        ended.says("cannot be reached within the bounds"),
         "{}",
         ended.stdout
     );

@@ -32,7 +32,7 @@ fn errors(name: &str, ranks: usize, more: &[&str]) -> Vec<f64> {
     );
     words.extend(more);
     let ended = run(ranks, 120, &words);
-    assert!(ended.stdout.contains("FINISHED"), "{}", ended.text());
+    assert!(ended.says("FINISHED"), "{}", ended.text());
     let steps = ended.stdout.split("100.0 %").next().unwrap();
     steps
         .lines()

@@ -43,11 +43,7 @@ fn same(name: &str, ranks: usize, parts: &[&str]) {
     first_part(&broken, ranks, parts, steps / 2);
     let ended = start(&broken, ranks, &[parts, &["-restart"]].concat());
     assert_eq!(ended.code, whole.code, "{name}: {}", ended.text());
-    assert!(
-        ended.stdout.contains("resumed from"),
-        "{name}: {}",
-        ended.text()
-    );
+    assert!(ended.says("resumed from"), "{name}: {}", ended.text());
     assert_eq!(rows(&broken), rows(&unbroken), "{name}");
     let (expected, found) = (fields(&unbroken), fields(&broken));
     assert!(
@@ -252,11 +248,7 @@ fn a_signal_ends_a_run_that_goes_on_later() {
         ended.text(),
         began.elapsed()
     );
-    assert!(
-        ended
-            .stdout
-            .contains("the time that -wall_limit allows is nearly used up")
-    );
+    assert!(ended.says("the time that -wall_limit allows is nearly used up"));
     assert_eq!(start(&stopped, 1, &[LONGER, "-restart"]).code, Some(0));
     assert_eq!(rows(&stopped), rows(&unbroken));
 }
@@ -316,7 +308,7 @@ fn a_checkpoint_that_does_not_fit_is_refused() {
         "the one before is taken",
         "step 5,",
     ] {
-        assert!(ended.stdout.contains(part), "{}", ended.stdout);
+        assert!(ended.says(part), "{}", ended.stdout);
     }
     assert_eq!(rows(&folder), rows(&unbroken));
     assert!(!folder.join("checkpoint-000006").exists());

@@ -290,7 +290,7 @@ pub enum CaseError {
     )]
     Reserved {
         /// Name without the dash.
-        option: &'static str,
+        option: String,
         /// The value that was given.
         given: String,
         /// Why the program decides.

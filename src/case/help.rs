@@ -4,12 +4,16 @@ use std::fmt::Write;
 
 use super::option::{Described, Group};
 use super::table::TABLE;
+use crate::text::{COLUMNS as WIDTH, wrapped};
 
-/// Columns of the terminal the help is written for.
-const WIDTH: usize = 100;
+/// Defaults that are longer do not widen their column.
+const LONG_DEFAULT: usize = 20;
 
 const UNITS: &str =
     "Units are mm, N, MPa, g and ms. Without options the frictionless reference case is run.";
+
+const OF_PETSC: &str = "The options of PETSc that the objects of a run read follow; docs/petsc-options.md says which \
+                        have an effect.";
 
 fn options_of(group: Group) -> impl Iterator<Item = &'static dyn Described> {
     TABLE
@@ -18,16 +22,15 @@ fn options_of(group: Group) -> impl Iterator<Item = &'static dyn Described> {
         .filter(move |option| option.group() == group)
 }
 
-/// What `-help` prints: every option of ours with unit, default, range and meaning, for a terminal of 100 columns.
+/// What `-help` prints: every option of ours with unit, default, range and meaning, for a terminal of 80 columns.
 pub fn help_text() -> String {
     let mut text = String::from(
-        "ssnp155: sheet metal forming with contact, the NAFEMS contact benchmark 3 (code_aster test SSNP155).\n\n\
+        "ssnp155: sheet metal forming with contact, the NAFEMS contact benchmark 3\n\
+         (code_aster test SSNP155).\n\n\
          Usage: ssnp155 [-name value ...] [-options_file inputs/ssnp155.opts]\n\n",
     );
-    text.push_str(UNITS);
-    text.push_str(
-        "\nEvery option of PETSc works as well; its own help follows where PETSc prints it.\n",
-    );
+    wrap(&mut text, UNITS, 0);
+    wrap(&mut text, OF_PETSC, 0);
     let name_width = TABLE
         .iter()
         .map(|option| option.name().len() + 1)
@@ -35,7 +38,8 @@ pub fn help_text() -> String {
         .unwrap_or_default();
     let default_width = TABLE
         .iter()
-        .map(|option| option.default_with_unit().len())
+        .map(|option| option.default_with_unit().chars().count())
+        .filter(|&length| length <= LONG_DEFAULT)
         .max()
         .unwrap_or_default();
     for group in Group::ALL {
@@ -65,22 +69,9 @@ pub fn help_text() -> String {
 
 /// Appends a sentence, broken between words and indented.
 fn wrap(text: &mut String, sentence: &str, indent: usize) {
-    let mut column = 0;
-    for word in sentence.split_whitespace() {
-        let length = word.chars().count();
-        if column > 0 && column + 1 + length <= WIDTH {
-            text.push(' ');
-            column += 1 + length;
-        } else {
-            if column > 0 {
-                text.push('\n');
-            }
-            text.push_str(&" ".repeat(indent));
-            column = indent + length;
-        }
-        text.push_str(word);
+    for line in wrapped(sentence, WIDTH - indent) {
+        text.push_str(&format!("{:indent$}{line}\n", ""));
     }
-    text.push('\n');
 }
 
 /// The page docs/options.md; a test keeps the file equal to it.
@@ -94,7 +85,7 @@ pub fn options_markdown() -> String {
     page.push_str(
         "\nOptions are given on the command line as `-name value`, or in a file (one per line, `#` begins a comment) with\n\
          `-options_file path`; [inputs/ssnp155.opts](../inputs/ssnp155.opts) is the reference case with all of them.\n\
-         Every option of PETSc works as well.\n",
+         PETSc's options: [petsc-options.md](petsc-options.md).\n",
     );
     for group in Group::ALL {
         // Writing to a String cannot fail.

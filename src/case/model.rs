@@ -229,8 +229,12 @@ pub struct Output {
     pub iterations: bool,
     /// Whether the model is only shown.
     pub dry_run: bool,
-    /// Whether the screen stays silent: one of several runs of a search.
+    /// Whether only warnings, verdicts and last words are shown.
     pub quiet: bool,
+    /// Whether nothing at all is shown: one of several runs of a search.
+    pub silent: bool,
+    /// Output folders of two runs that are laid side by side; nothing is run then.
+    pub compare: Option<[String; 2]>,
     /// Options by whose values the run is differentiated.
     pub sensitivity: Vec<&'static str>,
 }

@@ -64,7 +64,9 @@ impl Case {
                 every: table::OUTPUT_EVERY.read(options)?,
                 iterations: table::MONITOR_ITERATIONS.read(options)?,
                 dry_run: table::DRY_RUN.read(options)?,
-                quiet: false,
+                quiet: table::QUIET.read(options)?,
+                silent: false,
+                compare: table::COMPARE.read(options)?,
                 sensitivity: table::SENSITIVITY.read(options)?,
             },
             resuming: Resuming {

@@ -10,6 +10,7 @@ use std::sync::LazyLock;
 use super::hardening::{self, Law};
 use super::inverse::{OptionalPath, OptionalReal, SoughtList};
 use super::kind::{Choice, Flag, Integer, List, Path, Real};
+use super::kind_paths::TwoPaths;
 use super::kind_resuming::{Restarting, WallTime};
 use super::model::Dynamics;
 use super::option::{Described, Group, Opt};
@@ -266,6 +267,17 @@ option_table! {
         meaning: "Shows the model (sizes, steps, unknowns, memory, shares of the ranks), draws it as model.svg, and solves \
                   nothing.",
         value: |case| case.output.dry_run,
+    }
+    QUIET: Flag {
+        name: "quiet", unit: "", default: "false", group: Group::Output, kind: Flag,
+        meaning: "Shows only warnings, the verdicts and the last words; run.log has all.",
+        value: |case| case.output.quiet,
+    }
+    COMPARE: TwoPaths {
+        name: "compare", unit: "", default: "none", group: Group::Output, kind: TwoPaths,
+        meaning: "Runs nothing, and puts two runs side by side: the page comparison.html in -output_dir, from the summary.json and \
+                  history.csv of their output folders.",
+        value: |case| case.output.compare.clone(),
     }
     OUTPUT_DIR: Path {
         name: "output_dir", unit: "", default: "results", group: Group::Output, kind: Path,

@@ -29,6 +29,7 @@ const PETSC_NAMES: &[&str] = &[
     "ao_",
     "log_",
     "sub_",
+    "all_ksp_",
     condensed_option!(""),
     "options_",
     "viewer_",
@@ -89,9 +90,7 @@ pub fn check_unused(unused: &[(String, Option<String>)]) -> (Vec<CaseError>, Vec
     for (option, value) in unused {
         let given = option.trim_start_matches('-');
         let name = normalised(given);
-        let known = TABLE
-            .iter()
-            .any(|ours| ours.name().eq_ignore_ascii_case(given));
+        let known = is_own(given);
         if known && option.starts_with('-') {
             errors.push(CaseError::TwoDashes {
                 option: given.to_owned(),
@@ -120,6 +119,13 @@ pub fn check_unused(unused: &[(String, Option<String>)]) -> (Vec<CaseError>, Vec
         }
     }
     (errors, warnings)
+}
+
+/// Whether an option is one of ours, by its name without the dash.
+pub(crate) fn is_own(name: &str) -> bool {
+    TABLE
+        .iter()
+        .any(|ours| ours.name().eq_ignore_ascii_case(name))
 }
 
 /// Lower case, underscores, nothing behind an equals sign.

@@ -83,7 +83,7 @@ pub(super) fn design(
         Ok(found) => found,
         Err(InverseError::Interrupted) => {
             let made = search.runs.made();
-            search.runs.show(&super::report::interrupted(made));
+            search.runs.tell(&super::report::interrupted(made));
             return Ok(Ending::Interrupted);
         }
         Err(error) => return Err(error),
@@ -124,7 +124,7 @@ pub(super) fn design(
     };
     agree_in_words(comm, mine).map_err(InverseError::Agreed)?;
     let text = design.text(search.runs.parameters(), search.runs.folder());
-    search.runs.show(&text);
+    search.runs.tell(&text);
     Ok(match found {
         Found::Within => Ending::Holds,
         Found::OutOfReach | Found::RunsUsedUp => Ending::DoesNotHold,

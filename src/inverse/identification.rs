@@ -95,7 +95,7 @@ pub(super) fn identify(
     match (outcome, search) {
         (Ok(ended), Some(mut search)) => conclude(path, &ended, &mut search),
         (Err(InverseError::Interrupted), Some(mut search)) => {
-            search.runs.show(&report::interrupted(search.runs.made()));
+            search.runs.tell(&report::interrupted(search.runs.made()));
             Ok(Ending::Interrupted)
         }
         (Err(error), _) => Err(error),
@@ -159,7 +159,7 @@ fn conclude(path: &str, ended: &Ended, search: &mut Search) -> Result<Ending, In
     };
     agree_in_words(search.runs.comm(), mine).map_err(InverseError::Agreed)?;
     let text = report::text(&found, search.runs.folder());
-    search.runs.show(&text);
+    search.runs.tell(&text);
     Ok(if found.verdicts.all_hold() {
         Ending::Holds
     } else {

@@ -62,6 +62,9 @@ impl Runs {
             _ => Ok(()),
         };
         agree_in_words(comm, log).map_err(InverseError::Agreed)?;
+        if case.output.quiet {
+            monitor.be_quiet();
+        }
         monitor.show(&replaced);
         let mut case = case.without_search();
         case.output.sensitivity.clear();
@@ -81,6 +84,11 @@ impl Runs {
     /// Shows a text to the user, once over all ranks.
     pub fn show(&mut self, text: &str) {
         self.monitor.show(text);
+    }
+
+    /// As [`Runs::show`], also to who asked for quiet.
+    pub fn tell(&mut self, text: &str) {
+        self.monitor.tell(text);
     }
 
     /// What is looked for.
@@ -181,7 +189,7 @@ impl Runs {
     fn run(&mut self, mut case: Case, folder: &str) -> Result<Option<Ran>, InverseError> {
         let path = self.folder.file(folder);
         case.output.dir = path.display().to_string();
-        case.output.quiet = true;
+        case.output.silent = true;
         let ran = self.run_and_conclude(&case);
         let (ending, ran) = agree_in_words(&self.comm, ran).map_err(InverseError::Agreed)?;
         match ending {

@@ -1,9 +1,7 @@
 //! The last words of a run: a frame that shows from afar how it ended, a headline, and facts.
 
 use super::summary::Status;
-
-/// Width of the banners, characters.
-const WIDTH: usize = 80;
+use crate::text::{COLUMNS as WIDTH, wrapped};
 
 /// The character of the frame.
 fn frame(status: Status) -> char {
@@ -26,7 +24,7 @@ pub fn banner(status: Status, headline: &str, facts: &[(&str, String)]) -> Strin
     let mut text = format!("{rule}\n{frame}  {headline}\n");
     for (name, value) in facts {
         // The value keeps to its own column also where it takes several lines.
-        for (index, line) in wrap(value, WIDTH.saturating_sub(names + 6))
+        for (index, line) in wrapped(value, WIDTH.saturating_sub(names + 6))
             .iter()
             .enumerate()
         {
@@ -35,25 +33,6 @@ pub fn banner(status: Status, headline: &str, facts: &[(&str, String)]) -> Strin
         }
     }
     text + &rule + "\n"
-}
-
-/// Breaks at spaces; a word longer than a line stays whole.
-fn wrap(text: &str, width: usize) -> Vec<String> {
-    let mut lines = Vec::new();
-    for paragraph in text.lines() {
-        let mut line = String::new();
-        for word in paragraph.split_whitespace() {
-            if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > width {
-                lines.push(std::mem::take(&mut line));
-            }
-            if !line.is_empty() {
-                line.push(' ');
-            }
-            line.push_str(word);
-        }
-        lines.push(line);
-    }
-    lines
 }
 
 #[cfg(test)]

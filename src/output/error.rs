@@ -107,6 +107,14 @@ pub enum OutputError {
         /// What is wrong with it.
         reason: String,
     },
+    /// A folder to compare holds no run that has ended.
+    #[error("-compare: {} holds no run that has ended: {reason}; specify the output folders of two runs", path.display())]
+    NoRun {
+        /// The folder.
+        path: PathBuf,
+        /// What is missing.
+        reason: String,
+    },
     /// A figure could not be drawn.
     #[error("cannot draw the figure {}: {reason}", path.display())]
     Figure {

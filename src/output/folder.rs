@@ -28,6 +28,8 @@ const SENSITIVITY_FIGURE: &str = "sensitivity.svg";
 pub(super) const SUMMARY: &str = "summary.json";
 /// The page about the run.
 const REPORT: &str = "report.html";
+/// The page about two runs.
+const COMPARISON: &str = "comparison.html";
 /// Force against stroke.
 const FORCE: &str = "force.svg";
 /// What the run has shown.
@@ -167,6 +169,11 @@ impl OutputDir {
     /// `report.html`, see [`super::Report`].
     pub fn report(&self) -> PathBuf {
         self.file(REPORT)
+    }
+
+    /// `comparison.html`, see [`super::TwoRuns`].
+    pub fn comparison(&self) -> PathBuf {
+        self.file(COMPARISON)
     }
 
     /// `force.svg`, see [`super::plot::force`].

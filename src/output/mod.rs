@@ -10,6 +10,7 @@ mod arrays;
 mod atomic;
 pub mod banner;
 pub mod checkpoint;
+pub mod comparison;
 pub mod derivatives;
 pub mod error;
 pub mod folder;
@@ -27,6 +28,7 @@ pub mod vtkhdf;
 
 pub use arrays::Arrays;
 pub(crate) use atomic::write_json;
+pub use comparison::TwoRuns;
 pub use derivatives::{DerivativeFile, DerivativeRow, DerivativeTable};
 pub use error::OutputError;
 pub(crate) use error::agree;

@@ -132,7 +132,7 @@ pub struct Provenance {
     pub build: BTreeMap<String, String>,
     /// SHA-256 of what the run was made from, by name.
     pub inputs: BTreeMap<String, String>,
-    /// Every option that has a value, default or not.
+    /// Every option of ours, default or not, and those of PETSc's that the user gave.
     pub options: BTreeMap<String, String>,
 }
 

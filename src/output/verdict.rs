@@ -4,7 +4,7 @@ use std::fmt::{self, Write as _};
 
 use serde::Serialize;
 
-use crate::text::number;
+use crate::text::{COLUMNS, fitted, number, wrapped};
 
 /// How far the computed value may be from the reference.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -141,6 +141,20 @@ impl VerdictRow {
         }
     }
 
+    /// The value, its unit and how far from it a result may be, as in "49.9 N ±1".
+    fn wanted(&self) -> String {
+        let unit = match self.unit.as_str() {
+            "1" | "" => String::new(),
+            unit => format!(" {unit}"),
+        };
+        let value = number(self.reference) + &unit;
+        match self.tolerance {
+            Tolerance::AtMost | Tolerance::AtLeast => format!("{} {value}", self.tolerance),
+            Tolerance::Absolute(_) => format!("{value} {}", self.tolerance),
+            Tolerance::Relative(_) => format!("{value} ±{}", self.tolerance),
+        }
+    }
+
     fn cells(&self) -> [String; 8] {
         [
             self.comparison.to_string(),
@@ -189,18 +203,26 @@ impl VerdictTable {
             .count()
     }
 
-    /// Aligned table for the terminal, with a last line that counts; ends with a line break.
+    /// Table for a terminal: what rows are compared with stands above them. A last line counts; ends with a line break.
     pub fn text(&self) -> String {
-        let cells: Vec<_> = self.rows.iter().map(VerdictRow::cells).collect();
-        let widths = widths(&cells);
-        let rule = "-".repeat(widths.iter().sum::<usize>() + 2 * (widths.len() - 1));
-        let mut text = line(&HEADS.map(str::to_owned), &widths, "  ");
-        text.push_str(&rule);
-        text.push('\n');
-        cells
-            .iter()
-            .for_each(|row| text.push_str(&line(row, &widths, "  ")));
-        text.push_str(&rule);
+        let heads = ["compared quantity", "computed", "value", "verdict"];
+        let mut text = terminal_line(&heads.map(str::to_owned)) + &"-".repeat(COLUMNS) + "\n";
+        let mut above = String::new();
+        for row in &self.rows {
+            let heading = format!("{}: {}\n", row.comparison, row.source);
+            if heading != above {
+                text.push_str(&fitted(&heading));
+                above = heading;
+            }
+            let cells = [
+                row.quantity.clone(),
+                number(row.computed),
+                row.wanted(),
+                row.verdict.to_string(),
+            ];
+            text.push_str(&terminal_line(&cells));
+        }
+        text.push_str(&"-".repeat(COLUMNS));
         let count = self.rows.len();
         let outcome = match (count, self.failures()) {
             (0, _) => "nothing was compared".to_owned(),
@@ -219,12 +241,7 @@ impl VerdictTable {
             .map(|row| row.cells().map(|cell| cell.replace('|', "\\|")))
             .collect();
         let widths = widths(&cells);
-        let row = |cells: &[String; 8]| {
-            format!(
-                "| {} |\n",
-                line(cells, &widths, " | ").trim_end_matches('\n')
-            )
-        };
+        let row = |cells: &[String; 8]| format!("| {} |\n", line(cells, &widths));
         let mut text = row(&HEADS.map(str::to_owned));
         for (width, right) in widths.iter().zip(RIGHT_ALIGNED) {
             let _ = write!(
@@ -250,7 +267,7 @@ fn widths(rows: &[[String; 8]]) -> [usize; 8] {
     widths
 }
 
-fn line(cells: &[String; 8], widths: &[usize; 8], separator: &str) -> String {
+fn line(cells: &[String; 8], widths: &[usize; 8]) -> String {
     let padded = cells
         .iter()
         .zip(widths)
@@ -262,13 +279,20 @@ fn line(cells: &[String; 8], widths: &[usize; 8], separator: &str) -> String {
                 format!("{cell:<width$}")
             }
         });
-    let joined = padded.collect::<Vec<_>>().join(separator);
-    // Markdown needs the padding of the last column to close its cells; a terminal does not.
-    if separator.contains('|') {
-        joined + "\n"
-    } else {
-        joined.trim_end().to_owned() + "\n"
-    }
+    padded.collect::<Vec<_>>().join(" | ")
+}
+
+/// Columns of the quantity and of the value it is compared with, in a terminal; with the other two they fill it.
+const QUANTITY: usize = 33;
+const WANTED: usize = 23;
+
+/// A row for a terminal: quantity, computed value, what it is compared with, verdict. A long quantity takes more lines.
+fn terminal_line([quantity, computed, wanted, verdict]: &[String; 4]) -> String {
+    let mut parts = wrapped(quantity, QUANTITY).into_iter();
+    let first = parts.next().unwrap_or_default();
+    let mut text = format!("  {first:<QUANTITY$} {computed:>11}  {wanted:<WANTED$} {verdict}\n");
+    parts.for_each(|part| text.push_str(&format!("    {part}\n")));
+    text
 }
 
 #[cfg(test)]
@@ -297,7 +321,7 @@ mod tests {
                 )
                 .regression(),
                 VerdictRow::new(
-                    "largest penetration",
+                    "largest penetration, also between the contact points",
                     3.2e-9,
                     1e-3,
                     Tolerance::AtMost,
@@ -344,13 +368,17 @@ mod tests {
     #[test]
     fn the_text_is_aligned_and_counts_the_failures() {
         let text = table().text();
-        let expected = "\
-compared with  quantity             computed    value  tolerance  unit  source            verdict
--------------------------------------------------------------------------------------------------
-reference      DY at A, punch side     -28.5    -28.5      0.1 %  mm    SSNP155 document  holds
-regression     DY at A, sheet side     -29.4  -29.001      ±0.05  mm    version 0.1.0     FAILS
-limit          largest penetration  3.200e-9    0.001    at most  mm    own | limit       holds
--------------------------------------------------------------------------------------------------
+        let expected =
+            "  compared quantity                    computed  value                   verdict
+--------------------------------------------------------------------------------
+reference: SSNP155 document
+  DY at A, punch side                     -28.5  -28.5 mm ±0.1 %         holds
+regression: version 0.1.0
+  DY at A, sheet side                     -29.4  -29.001 mm ±0.05        FAILS
+limit: own | limit
+  largest penetration, also between    3.200e-9  at most 0.001 mm        holds
+    the contact points
+--------------------------------------------------------------------------------
 1 of 3 FAIL
 ";
         assert_eq!(text, expected, "{text}");

@@ -23,6 +23,15 @@ pub enum RunError {
     /// PETSc.
     #[error("{0}; if a value of one of PETSc's options is to blame: -help lists what each can be")]
     Petsc(petsc::Error),
+    /// A limit on memory that would make the BLAS hang.
+    #[error(
+        "a limit on memory (ulimit -v, or one of the batch system) leaves less than {megabytes} MB for the factorisation on a \
+         rank; raise it, or use fewer ranks on this machine"
+    )]
+    NoRoom {
+        /// What is needed besides what the run has so far.
+        megabytes: usize,
+    },
     /// There is nothing to go on from.
     #[error(transparent)]
     Restart(#[from] RestartError),

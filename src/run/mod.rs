@@ -3,6 +3,7 @@
 //! Never: mechanics, or how a file is written.
 
 mod checkpoint;
+mod compare;
 mod conclusion;
 mod diagnosis;
 mod dry_run;
@@ -26,6 +27,7 @@ use mpi::traits::Communicator;
 use petsc::CallbackError;
 
 pub use checkpoint::Resumed;
+pub use compare::compare;
 pub use conclusion::{Ending, conclude};
 pub use diagnosis::{Chattering, Refusal, ResidualHistory};
 pub use error::{RestartError, RunError};
@@ -45,8 +47,8 @@ use crate::sensitivity::Beside;
 use crate::system::{History, Problem, System};
 use ledger::Spent;
 use outcome::why;
-pub use setup::refuse_bad_options;
-use setup::{blas, defaults, doubtful, linear, unread};
+use setup::{blas, defaults, doubtful, given, help, linear};
+pub use setup::{fate_of_petsc_option, refuse_bad_options};
 use simulation::Simulation;
 use step_size::landmarks;
 use stop_watch::StopWatch;
@@ -59,9 +61,9 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     let clock = Instant::now();
     // Before any file is made: neither a typing mistake nor a question may cost an earlier run's results.
     if petsc::options::has("help")? {
-        return defaults::read_options(case, comm).map(|()| None);
+        return help::show(case, comm).map(|()| None);
     }
-    unread::refuse_bad_options(case, comm)?;
+    refuse_bad_options(case, comm)?;
     defaults::read_options(case, comm)?;
     if case.output.dry_run {
         return dry_run::describe(case, comm).map(|()| None);
@@ -87,6 +89,7 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     let motion = case.loading.motion();
     let landmarks = landmarks(case)?;
     let system = Rc::new(System::new(problem, comm.duplicate())?);
+    blas::find_room(comm)?;
     let unknowns = system.unknown_count();
     let history = match &resumed {
         Some(resumed) => resumed.history(&system)?,
@@ -95,8 +98,8 @@ pub fn simulate(case: &Case, comm: &SimpleCommunicator) -> Result<Option<Outcome
     let mut recorder = Recorder::new(case, &system, resumed.as_ref(), folder)?;
     recorder.show(&replaced);
     recorder.show(&blas::report(comm));
-    recorder.show(&linear::report(comm)?);
-    recorder.show(&doubtful::report()?);
+    recorder.tell(&linear::report(comm)?);
+    recorder.tell(&given::report(case)?);
     let simulation = Rc::new(Simulation::new(
         case, system, history, recorder, landmarks, stop_watch, spent,
     )?);

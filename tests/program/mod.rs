@@ -19,6 +19,12 @@ pub struct Ended {
 }
 
 impl Ended {
+    /// Whether these words were shown, wherever lines are broken.
+    pub fn says(&self, words: impl AsRef<str>) -> bool {
+        let joined = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+        joined(&self.stdout).contains(&joined(words.as_ref()))
+    }
+
     /// Everything shown.
     pub fn text(&self) -> String {
         format!("{}\n{}", self.stdout, self.stderr)

@@ -16,8 +16,8 @@ use crate::text::rounded;
 use states::States;
 
 const PAGE: &str = include_str!("page/report.html");
-const STYLE: &str = include_str!("page/style.css");
-const SCRIPTS: [&str; 5] = [
+const SCRIPTS: [&str; 6] = [
+    include_str!("page/tools.js"),
     include_str!("page/data.js"),
     include_str!("page/chart.js"),
     include_str!("page/sheet.js"),
@@ -88,7 +88,7 @@ impl Report<'_> {
         };
         let json =
             serde_json::to_string(&data).map_err(|error| OutputError::write(&path, error))?;
-        atomic::write(&path, page(&json).as_bytes())
+        atomic::write(&path, page(PAGE, &SCRIPTS, &json).as_bytes())
     }
 
     fn model(&self) -> Model {
@@ -127,15 +127,16 @@ fn defaults() -> BTreeMap<&'static str, String> {
         .unwrap_or_default()
 }
 
-/// The page with style, script and data in their places. Data cannot end the element they stand in.
-fn page(json: &str) -> String {
-    PAGE.replace("{{style}}", STYLE)
-        .replace("{{script}}", &SCRIPTS.join("\n"))
+/// A page with style, scripts and data in their places. Data cannot end the element they stand in.
+pub(super) fn page(template: &str, scripts: &[&str], json: &str) -> String {
+    template
+        .replace("{{style}}", include_str!("page/style.css"))
+        .replace("{{script}}", &scripts.join("\n"))
         .replace("{{data}}", &json.replace('<', "\\u003c"))
 }
 
 /// The rows as columns, rounded: a picture shows less, and the table in full is history.csv.
-fn columns(records: &[StepRecord]) -> BTreeMap<String, Vec<Value>> {
+pub(super) fn columns(records: &[StepRecord]) -> BTreeMap<String, Vec<Value>> {
     let mut columns = BTreeMap::<String, Vec<Value>>::new();
     for record in records {
         let Ok(Value::Object(row)) = serde_json::to_value(record) else {
@@ -158,7 +159,7 @@ mod tests {
 
     #[test]
     fn the_page_holds_everything_and_data_cannot_break_out() {
-        let page = page(r#"{"name":"</script><b>"}"#);
+        let page = page(PAGE, &SCRIPTS, r#"{"name":"</script><b>"}"#);
         assert!(!page.contains("{{"), "a place was not filled");
         assert!(page.contains(r#"{"name":"\u003c/script>\u003cb>"}"#));
         for word in ["http://", "https://", "src=", "@import", "url("] {

@@ -6,6 +6,7 @@ use crate::output::banner::banner;
 use crate::output::{Diagnosis, Summary};
 use crate::run::outcome::Outcome;
 use crate::run::simulation::Interruption;
+use crate::run::stop_watch::StopCause;
 
 /// The banner of a run: how it ended, where and why if it did not finish, what can be done, and what it took.
 pub(super) fn last_words(case: &Case, summary: &Summary, outcome: &Outcome) -> String {
@@ -15,6 +16,7 @@ pub(super) fn last_words(case: &Case, summary: &Summary, outcome: &Outcome) -> S
     }
     if let Some(stop) = &outcome.interruption {
         facts.extend(interrupted(case, stop, outcome));
+        facts.extend(code_of_mpirun(stop.cause));
     }
     facts.extend(named("note", &summary.notes));
     facts.extend(effort(case, outcome));
@@ -23,6 +25,19 @@ pub(super) fn last_words(case: &Case, summary: &Summary, outcome: &Outcome) -> S
 
 /// A fact of the banner: its name, and what is to be said.
 type Fact = (&'static str, String);
+
+/// A signal to mpirun that makes it end its ranks hides their code behind its own.
+fn code_of_mpirun(cause: StopCause) -> Option<Fact> {
+    const SET_BY_MPIRUN: [&str; 2] = ["OMPI_COMM_WORLD_SIZE", "PMIX_RANK"];
+    let started = SET_BY_MPIRUN
+        .iter()
+        .any(|name| std::env::var_os(name).is_some());
+    let ends_ranks = matches!(cause, StopCause::Signal("SIGTERM" | "SIGINT" | "SIGHUP"));
+    (started && ends_ranks).then(|| {
+        let words = "this program ends with 3; mpirun, if the signal went to it, with a code of its own (Open MPI 4.1: 1)";
+        ("code", words.to_owned())
+    })
+}
 
 fn interrupted(case: &Case, stop: &Interruption, outcome: &Outcome) -> [Fact; 3] {
     let place = format!(

@@ -22,6 +22,10 @@ pub(super) const MOTION_LIMIT: f64 = 5e-2;
 /// Largest tensile force of a contact point as a share of the punch force: what the residual's tolerance leaves.
 pub(super) const TENSION_LIMIT: f64 = 1e-6;
 
+/// Largest residual norm an accepted step may leave, mm: ten times what the default tolerance leaves. Loosened tolerances are
+/// found by it, which neither the balance (a sum) nor the work (a difference over a step) shows.
+pub(super) const RESIDUAL_LIMIT: f64 = 1e-8;
+
 /// The certificate's limits for every run that got anywhere, and the reference values where the
 /// case is the one they belong to.
 pub(super) fn judge(
@@ -88,6 +92,12 @@ fn certificate(case: &Case, records: &[StepRecord]) -> Vec<VerdictRow> {
             |r| r.balance_error.abs(),
             BALANCE_LIMIT,
             "1",
+        ),
+        limit(
+            "residual norm where Newton stopped",
+            |r| r.residual_norm_mm,
+            RESIDUAL_LIMIT,
+            "mm",
         ),
         limit(
             "punch work less internal, contact and inertia work",

@@ -46,8 +46,6 @@ pub fn conclude(
     let summary = summary::summarise(case, &outcome, session, comm, verdicts.clone())?;
     if comm.rank() == 0 {
         summary.write(outcome.recorder.folder().summary())?;
-        outcome.recorder.force_figure(&reference)?;
-        outcome.recorder.derivative_figure()?;
     }
     let mut text = if verdicts.rows.is_empty() {
         "\n".to_owned()
@@ -56,7 +54,18 @@ pub fn conclude(
     };
     text.push_str(&unread::warnings()?);
     text.push_str(&banner::last_words(case, &summary, &outcome));
-    outcome.recorder.show(&text);
+    // Who is asked to end may be killed soon after, so the figures come last then. A good end is said when all is written.
+    let interrupted = summary.status == Status::Interrupted;
+    if interrupted {
+        outcome.recorder.tell(&text);
+    }
+    if comm.rank() == 0 {
+        outcome.recorder.force_figure(&reference)?;
+        outcome.recorder.derivative_figure()?;
+    }
+    if !interrupted {
+        outcome.recorder.tell(&text);
+    }
     // The page is made from the files of the run, which all ranks must have closed.
     let (folder, records) = outcome.recorder.close();
     if comm.rank() == 0 {

@@ -6,26 +6,28 @@ use mpi::traits::Communicator;
 use petsc::Session;
 
 use super::angles::{NamedAngle, angles};
-use super::judgement::{BALANCE_LIMIT, CONE_LIMIT, TENSION_LIMIT, WORK_LIMIT};
+use super::judgement::{BALANCE_LIMIT, CONE_LIMIT, RESIDUAL_LIMIT, TENSION_LIMIT, WORK_LIMIT};
 use super::{inputs, sensitivity};
-use crate::case::{Case, CaseError};
+use crate::case::Case;
 use crate::output::VerdictTable;
 use crate::output::summary::{Counts, Provenance, Status, Summary, Timing, worst_values};
 use crate::run::diagnosis::{diagnose, notes};
+use crate::run::error::RunError;
 use crate::run::outcome::Outcome;
 use crate::run::setup::blas::Blas;
+use crate::run::setup::given;
 
 /// The summary of an outcome and its verdicts.
 ///
 /// # Errors
-/// None unless the table of options is broken, which the tests exclude.
+/// If PETSc cannot name its options.
 pub(super) fn summarise(
     case: &Case,
     outcome: &Outcome,
     session: &Session,
     comm: &impl Communicator,
     verdicts: VerdictTable,
-) -> Result<Summary, CaseError> {
+) -> Result<Summary, RunError> {
     let records = outcome.recorder.records();
     let (status, reason) = match (&outcome.failure, &outcome.interruption) {
         (Some(failure), _) => (Status::NotConverged, Some(failure.sentence())),
@@ -38,6 +40,7 @@ pub(super) fn summarise(
         let pair = |angle: &NamedAngle| (angle.name.clone(), value(angle));
         angles.iter().map(pair).collect()
     };
+    let petsc_options = given::by_the_user(case)?;
     Ok(Summary {
         status,
         reason,
@@ -63,6 +66,7 @@ pub(super) fn summarise(
                 text("penetration_mm"),
                 case.discretisation.penetration_limit,
             ),
+            (text("residual_mm"), RESIDUAL_LIMIT),
             (text("tensile_force"), TENSION_LIMIT),
             (text("balance"), BALANCE_LIMIT),
             (text("cone"), CONE_LIMIT),
@@ -70,7 +74,7 @@ pub(super) fn summarise(
         ]),
         worst: worst_values(records),
         verdicts,
-        provenance: provenance(case, outcome, session, comm),
+        provenance: provenance(case, outcome, session, comm, petsc_options),
         timing: Timing {
             cpu_s: outcome.cpu_seconds,
             wall_s: outcome.wall_seconds,
@@ -84,6 +88,7 @@ fn provenance(
     outcome: &Outcome,
     session: &Session,
     comm: &impl Communicator,
+    petsc_options: Vec<(String, String)>,
 ) -> Provenance {
     let text = |value: &str| value.to_owned();
     Provenance {
@@ -108,6 +113,7 @@ fn provenance(
             .options()
             .into_iter()
             .map(|(name, value)| (text(name), value))
+            .chain(petsc_options)
             .collect(),
     }
 }

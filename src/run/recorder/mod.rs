@@ -75,8 +75,10 @@ impl Recorder {
         };
         let history = agree(comm, mine)?;
         let mut monitor = Monitor::new(comm.rank(), stdout(), case.loading.motion());
-        if case.output.quiet {
+        if case.output.silent {
             monitor.silence();
+        } else if case.output.quiet {
+            monitor.be_quiet();
         }
         let mine = match comm.rank() {
             0 => monitor.log_to(&folder.log(), resumed.is_some()),
@@ -180,6 +182,11 @@ impl Recorder {
     /// Shows a text to the user, once over all ranks.
     pub fn show(&mut self, text: &str) {
         self.monitor.show(text);
+    }
+
+    /// As [`Recorder::show`], also to who asked for quiet: warnings, verdicts and last words.
+    pub fn tell(&mut self, text: &str) {
+        self.monitor.tell(text);
     }
 
     /// Takes an accepted step. Collective.

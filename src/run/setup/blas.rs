@@ -7,6 +7,9 @@ use std::path::Path;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use crate::ranks::lowest_failing;
+use crate::run::error::RunError;
+
 /// The BLAS in the process.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::run) struct Blas {
@@ -75,6 +78,26 @@ impl fmt::Display for Blas {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let plural = if self.threads == 1 { "" } else { "s" };
         write!(f, "{}, {} thread{plural}", self.variant, self.threads)
+    }
+}
+
+/// What OpenBLAS takes at its first product, once a thread, bytes. Where it cannot have it, it asks again for ever.
+const BUFFER: usize = 128 << 20;
+/// What is to be left besides, for the factors of a small case.
+const MARGIN: usize = 64 << 20;
+
+/// Refuses to run where a limit on memory leaves no room for the BLAS: it would not fail but hang. Collective.
+///
+/// # Errors
+/// [`RunError::NoRoom`], on every rank.
+pub(in crate::run) fn find_room(comm: &SimpleCommunicator) -> Result<(), RunError> {
+    // Memory that is not touched costs address space only, which is what ulimit -v limits.
+    let room = Vec::<u8>::new().try_reserve_exact(BUFFER + MARGIN).is_ok();
+    match lowest_failing(comm, !room) {
+        None => Ok(()),
+        Some(_) => Err(RunError::NoRoom {
+            megabytes: (BUFFER + MARGIN) >> 20,
+        }),
     }
 }
 

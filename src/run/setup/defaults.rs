@@ -46,16 +46,24 @@ pub(super) fn is_default(name: &str, value: Option<&str>) -> bool {
         .any(|(ours, default)| *ours == name && value == Some(*default))
 }
 
+/// Options whose values follow from the case.
+pub(super) fn of_case(case: &Case) -> [(&'static str, String); 4] {
+    let stepping = &case.stepping;
+    [
+        (Ts::REJECTIONS_OPTION, MOST_REJECTIONS.to_string()),
+        ("ts_adapt_scale_solve_failed", CUT_BACK.to_string()),
+        ("snes_atol", stepping.newton_tolerance.to_string()),
+        ("snes_max_it", stepping.newton_max_iterations.to_string()),
+    ]
+}
+
 /// Puts the defaults into PETSc's option database.
 pub(in crate::run) fn set(case: &Case) -> petsc::Result<()> {
     for (name, value) in DEFAULTS {
         set_default(name, value)?;
     }
-    set_default(Ts::REJECTIONS_OPTION, &MOST_REJECTIONS.to_string())?;
-    set_default("ts_adapt_scale_solve_failed", &CUT_BACK.to_string())?;
-    set_default("snes_atol", &case.stepping.newton_tolerance.to_string())?;
-    set_default(
-        "snes_max_it",
-        &case.stepping.newton_max_iterations.to_string(),
-    )
+    for (name, value) in of_case(case) {
+        set_default(name, &value)?;
+    }
+    Ok(())
 }

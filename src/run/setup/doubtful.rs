@@ -1,5 +1,5 @@
 //! Options of PETSc's that are taken as they are given although they are known to do harm: they are named at the start, and
-//! first among what can be tried when the run fails. So are those that the solver in use will not read.
+//! first among what can be tried when the run fails.
 
 use petsc::options;
 
@@ -75,40 +75,4 @@ pub(in crate::run) fn given() -> petsc::Result<Vec<(String, &'static str)>> {
         }
     }
     Ok(found)
-}
-
-/// How options of the linear solve begin that PETSc reads only where it solves by itself.
-const OF_PETSCS_SOLVE: &[&str] = &[
-    "pc_",
-    "mat_mumps_",
-    "mat_superlu",
-    "mat_umfpack_",
-    "sub_",
-    "redundant_",
-];
-
-/// A line for each option that is known to do harm or to have no effect, at the start of a run.
-pub(in crate::run) fn report() -> petsc::Result<String> {
-    let mut text = String::new();
-    for (option, effect) in given()? {
-        text.push_str(&format!("warning: option {option}: {effect}\n"));
-    }
-    if linear::left_to_petsc()? {
-        return Ok(text);
-    }
-    // Read or not: PETSc's time stepper reads the options of a preconditioner that it then does not use.
-    for word in options::all()?.split_whitespace() {
-        let option = word.trim_start_matches('-');
-        if word.starts_with('-')
-            && OF_PETSCS_SOLVE
-                .iter()
-                .any(|start| option.starts_with(start))
-        {
-            text.push_str(&format!(
-                "warning: option -{option} has no effect on the program's own linear solve, which reads \
-                 -condensed_{option}; with -pc_type lu PETSc's solve reads it\n"
-            ));
-        }
-    }
-    Ok(text)
 }

@@ -87,6 +87,13 @@ const FORBIDDEN: &[Forbidden] = &[
         instead: "use -pc_type bjacobi or asm, which do so on each rank for its part, or -pc_type lu",
     },
     Forbidden {
+        option: "snes_linesearch_type",
+        values: &["shell"],
+        alone: false,
+        reason: "PETSc would ask for a function it has not got; the program's own line search is one, and the default",
+        instead: "watch it at work with -monitor_iterations",
+    },
+    Forbidden {
         option: "fp_trap",
         values: &["", "1", "true", "yes", "on"],
         alone: false,
@@ -106,7 +113,7 @@ pub(super) fn refuse(ranks: i32) -> Result<(), RunError> {
         };
         if let Some(given) = value(forbidden.option)?.filter(cannot_work) {
             return Err(CaseError::Reserved {
-                option: forbidden.option,
+                option: forbidden.option.to_owned(),
                 given,
                 reason: forbidden.reason,
                 allowed: None,

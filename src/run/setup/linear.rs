@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
-use petsc::{CallbackError, Failure, Matrix, MatrixRef, SnesRef, VectorRef, options};
+use petsc::{CallbackError, Failure, Ksp, Matrix, MatrixRef, SnesRef, VectorRef, options};
 
 use super::doubtful::value;
 use crate::case::{CaseError, condensed_option as condensed};
@@ -15,7 +15,7 @@ use crate::system::{
 };
 
 /// The nonlinear solver whose reduced set the condensed solve works on.
-const SOLVER: &str = "vinewtonrsls";
+pub(super) const SOLVER: &str = "vinewtonrsls";
 
 /// Options that ask PETSc to solve the linear systems, with what it then needs by default.
 const LEFT_TO_PETSC: &str = "pc_type";
@@ -193,6 +193,28 @@ impl LinearSolve {
         )
     }
 
+    /// Lets the solver read its options where it factorises, for a state of the sheet at rest. Collective.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn read_options(&self, u: &VectorRef, shift: f64) -> Result<(), CallbackError> {
+        let history = History::virgin(self.system.local());
+        let mut matrix = self.matrix()?;
+        self.evaluate(&history, 0.0, u, shift, &mut matrix)?;
+        match &self.condensed {
+            Some(condensed) => {
+                condensed.factor(&self.entries.borrow(), &[])?;
+            }
+            None => {
+                let mut solver = Ksp::new(self.system.comm())?;
+                solver.set_operator(&matrix)?;
+                solver.set_from_options()?;
+                solver.set_up()?;
+            }
+        }
+        Ok(())
+    }
+
     /// The package that factorises.
     pub fn factor_solver(&self, snes: &SnesRef) -> petsc::Result<Option<String>> {
         match &self.condensed {
@@ -250,6 +272,13 @@ pub(in crate::run) fn no_derivatives(name: &'static str) -> CaseError {
                  -sensitivity, or -pc_type and -snes_type"
             .to_owned(),
     }
+}
+
+/// Whether the linear solver of the Newton iterations applies its preconditioner once.
+pub(super) fn is_direct() -> petsc::Result<bool> {
+    let method = value("ksp_type")?;
+    let iterative = value(LEFT_TO_PETSC)?.is_some_and(|given| given != DIRECT);
+    Ok(method.map_or(!iterative, |method| method == "preonly"))
 }
 
 /// Whether the options leave the linear systems to PETSc.

@@ -4,58 +4,12 @@
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::{defaults, forbidden, linear};
+use super::{defaults, forbidden, given, linear};
 use crate::case::{Case, CaseError, Dynamics, check_unused};
 use crate::run::error::RunError;
 
-/// An option of PETSc's that the user may not change.
-struct Reserved {
-    option: &'static str,
-    /// The only value that does no harm; none does without.
-    allowed: Option<&'static str>,
-    /// Why, in words that fit behind "option -name value:".
-    reason: &'static str,
-    /// What to do instead, in words that fit behind "leave it out, and".
-    instead: &'static str,
-}
-
-const STEPS: &str = "the program chooses the steps itself";
-const STEP_OPTIONS: &str = "set the steps with -dt_initial, -dt_max, -dt_min or -fixed_steps_load";
-const END_OF_STEP: &str = "contact, stress and inertia hold at the end of a step only with the \
-                           parameters the program sets (spectral radius 0)";
-const SHORTER_STEPS: &str = "shorten the steps with -dt_max where vibrations are damped too much";
-const TIMES: &str = "set the times with -time_load and -time_unload";
-
-const fn never(option: &'static str, reason: &'static str, instead: &'static str) -> Reserved {
-    Reserved {
-        option,
-        allowed: None,
-        reason,
-        instead,
-    }
-}
-
-/// Options that would make the run step otherwise than its equations are written for.
-const RESERVED: &[Reserved] = &[
-    Reserved {
-        option: "ts_adapt_type",
-        allowed: Some("none"),
-        reason: STEPS,
-        instead: STEP_OPTIONS,
-    },
-    never("ts_dt", STEPS, STEP_OPTIONS),
-    never("ts_init_time", "every run begins at time 0", TIMES),
-    never("ts_max_time", "the motion of the punch ends the run", TIMES),
-    never("ts_alpha_radius", END_OF_STEP, SHORTER_STEPS),
-    never("ts_alpha_alpha_m", END_OF_STEP, SHORTER_STEPS),
-    never("ts_alpha_alpha_f", END_OF_STEP, SHORTER_STEPS),
-    never("ts_alpha_gamma", END_OF_STEP, SHORTER_STEPS),
-    never("ts_alpha_beta", END_OF_STEP, SHORTER_STEPS),
-];
-
-/// PETSc's time stepper for the equations of a case: the only one their callbacks are written for.
-const fn stepper(dynamics: Dynamics) -> Reserved {
-    let instead = "choose between inertia and statics with -dynamics";
+/// Refuses a time stepper other than the one the callbacks of the equations are written for.
+fn refuse_other_stepper(dynamics: Dynamics) -> Result<(), RunError> {
     let (allowed, reason) = match dynamics {
         Dynamics::Slow => (
             "alpha2",
@@ -66,11 +20,16 @@ const fn stepper(dynamics: Dynamics) -> Reserved {
             "the static equations (-dynamics none) hold at the end of each step",
         ),
     };
-    Reserved {
-        option: "ts_type",
-        allowed: Some(allowed),
-        reason,
-        instead,
+    match petsc::options::get("ts_type")? {
+        Some(given) if given != allowed => Err(CaseError::Reserved {
+            option: "ts_type".to_owned(),
+            given,
+            reason,
+            allowed: Some(allowed),
+            instead: "choose between inertia and statics with -dynamics",
+        }
+        .into()),
+        _ => Ok(()),
     }
 }
 
@@ -80,20 +39,8 @@ const fn stepper(dynamics: Dynamics) -> Reserved {
 /// # Errors
 /// Which one, why, and what to do.
 pub fn refuse_bad_options(case: &Case, comm: &SimpleCommunicator) -> Result<(), RunError> {
-    let stepper = stepper(case.loading.dynamics);
-    for reserved in RESERVED.iter().chain([&stepper]) {
-        let refused = |given: &String| reserved.allowed != Some(given);
-        if let Some(given) = petsc::options::get(reserved.option)?.filter(refused) {
-            return Err(CaseError::Reserved {
-                option: reserved.option,
-                given,
-                reason: reserved.reason,
-                allowed: reserved.allowed,
-                instead: reserved.instead,
-            }
-            .into());
-        }
-    }
+    given::refuse()?;
+    refuse_other_stepper(case.loading.dynamics)?;
     forbidden::refuse(comm.size())?;
     let (errors, _) = check_unused(&petsc::options::unused()?);
     errors

@@ -54,27 +54,27 @@ class Chart {
     this.svg.replaceChildren();
     const put = (...a) => this.svg.appendChild(svg(...a));
     for (const x of ticks(x0, x1, W / 90)) {
-      put("line", { x1: this.X(x), x2: this.X(x), y1: f.top, y2: f.bottom, stroke: "#e3e7ec" });
+      put("line", { x1: this.X(x), x2: this.X(x), y1: f.top, y2: f.bottom, stroke: "var(--line)" });
       put("text", { x: this.X(x), y: f.bottom + 17, "text-anchor": "middle" }, o.xTick ? o.xTick(x) : show(x));
     }
     const levels = o.log ? [] : ticks(y0, y1, H / 60);
     if (o.log) for (let p = Math.ceil(Math.log10(y0) - 1e-9); 10 ** p <= y1 * 1.0001; p++) levels.push(10 ** p);
     if (o.log && levels.length < 2) for (let p = Math.floor(Math.log10(y0)); p <= Math.log10(y1); p++) for (const m of [2, 3, 5]) { const v = m * 10 ** p; if (v >= y0 && v <= y1) levels.push(v); }
     for (const y of levels) {
-      put("line", { x1: f.left, x2: f.right, y1: this.Y(y), y2: this.Y(y), stroke: y === 0 ? "#aab4bf" : "#e3e7ec" });
+      put("line", { x1: f.left, x2: f.right, y1: this.Y(y), y2: this.Y(y), stroke: y === 0 ? "var(--axis)" : "var(--line)" });
       put("text", { x: f.left - 7, y: this.Y(y) + 4, "text-anchor": "end" }, o.yTick ? o.yTick(y) : show(y));
     }
-    put("path", { d: `M${f.left} ${f.top}V${f.bottom}H${f.right}`, fill: "none", stroke: "#aab4bf" });
+    put("path", { d: `M${f.left} ${f.top}V${f.bottom}H${f.right}`, fill: "none", stroke: "var(--axis)" });
     put("text", { x: (f.left + f.right) / 2, y: H - 5, "text-anchor": "middle", class: "label" }, o.xLabel);
     put("text", { x: 13, y: (f.top + f.bottom) / 2, "text-anchor": "middle", class: "label", transform: `rotate(-90 13 ${(f.top + f.bottom) / 2})` }, o.yLabel);
     if (o.turn !== undefined && o.turn > x0 && o.turn < x1) {
-      put("line", { x1: this.X(o.turn), x2: this.X(o.turn), y1: f.top, y2: f.bottom, stroke: "#8b95a1", "stroke-dasharray": "3 3" });
+      put("line", { x1: this.X(o.turn), x2: this.X(o.turn), y1: f.top, y2: f.bottom, stroke: "var(--faint)", "stroke-dasharray": "3 3" });
     }
     o.series.forEach(s => this.series(s, put));
     if (o.turn !== undefined && o.turn > x0 && o.turn < x1) put("text", { x: this.X(o.turn) - 6, y: o.log ? f.bottom - 7 : f.top + 11, "text-anchor": "end" }, "the punch turns");
-    this.line = put("path", { fill: "none", stroke: "#1b2430", "stroke-width": 1, visibility: "hidden", "pointer-events": "none" });
-    this.spot = put("circle", { r: 4.5, fill: "#fff", stroke: "#1b2430", "stroke-width": 2, visibility: "hidden", "pointer-events": "none" });
-    this.dot = put("circle", { r: 3.5, fill: "#1b2430", visibility: "hidden", "pointer-events": "none" });
+    this.line = put("path", { fill: "none", stroke: "var(--ink)", "stroke-width": 1, visibility: "hidden", "pointer-events": "none" });
+    this.spot = put("circle", { r: 4.5, fill: "var(--page)", stroke: "var(--ink)", "stroke-width": 2, visibility: "hidden", "pointer-events": "none" });
+    this.dot = put("circle", { r: 3.5, fill: "var(--ink)", visibility: "hidden", "pointer-events": "none" });
     this.key();
     this.mark(this.cursor);
   }

@@ -1,5 +1,4 @@
 // Data of the page: unpacked once, then only read. Units are mm, N, MPa, ms.
-const data = JSON.parse(document.getElementById("data").textContent);
 const history_ = data.history, model = data.model, summary = data.summary;
 const column = name => history_[name] || [];
 
@@ -36,33 +35,4 @@ function travel(t) { return t <= model.time_load ? depth(t) : 2 * model.stroke -
 function place(s, n) {
   const i = 2 * (s * states.nodes + n), [x0, x1, y0, y1] = states.span;
   return [x0 + (x1 - x0) * states.positions[i] / 65535, y0 + (y1 - y0) * states.positions[i + 1] / 65535];
-}
-
-// A number with `digits` significant digits, without trailing zeros; powers of ten where it is very small or large.
-function show(value, digits = 4) {
-  if (value === null || value === undefined || !isFinite(value)) return "–";
-  if (value === 0) return "0";
-  const size = Math.abs(value);
-  if (size < 1e-4 || size >= 1e7) {
-    const [m, e] = value.toExponential(Math.min(digits - 1, 2)).split("e");
-    return `${String(Number(m)).replace("-", "−")} · 10${[...String(Number(e))].map(c => "⁰¹²³⁴⁵⁶⁷⁸⁹"[c] || "⁻").join("")}`;
-  }
-  return String(Number(value.toPrecision(digits))).replace("-", "−");
-}
-// The same with all zeros, for what changes while one looks.
-const fixed = (value, decimals) => isFinite(value) && value !== null ? value.toFixed(decimals).replace("-", "−") : "–";
-
-function ticks(low, high, wanted) {
-  const raw = (high - low) / Math.max(wanted, 1), power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].map(m => m * power).find(s => s >= raw * 0.999);
-  const list = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) list.push(Number((k * step).toPrecision(12)));
-  return list;
-}
-
-function element(name, attributes = {}, ...children) {
-  const made = document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) key === "text" ? made.textContent = value : made.setAttribute(key, value);
-  made.append(...children);
-  return made;
 }

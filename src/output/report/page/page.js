@@ -1,10 +1,10 @@
 // Puts the page together and keeps slider, pictures and cursors in step.
-const OURS = "#14559e", OURS_LIGHT = "#86b3df", THEIRS = "#c2571a";
+const OURS = "var(--ours)", OURS_LIGHT = "var(--ours-light)", THEIRS = "var(--theirs)";
 const times = column("t_ms"), travels = times.map(travel), turnTravel = model.unload_fraction > 0 ? model.stroke : undefined;
 const stroke = column("stroke_mm");
 const travelRange = [0, Math.max(travels[travels.length - 1] || 0, 1e-3)];
 // Closed contact points by state 1, 2, 3. Forward is along the tool's outline: outwards on the die, inwards on the punch.
-const STATES = [["stick", "#1b2430"], ["slip forward", "#c2571a"], ["slip backward", "#8a4fa3"]];
+const STATES = [["stick", "var(--ink)"], ["slip forward", "var(--theirs)"], ["slip backward", "var(--third)"]];
 let pressureChart = null;
 
 function goTo(time) {
@@ -38,8 +38,8 @@ function drawPressure() {
   });
   const o = pressureChart.options;
   o.series = [
-    { name: "punch side, shown upwards", color: PUNCH_MARK, kind: "stems", width: 2, ...up },
-    { name: "die side, shown downwards", color: DIE_MARK, kind: "stems", width: 2, ...low },
+    { name: "punch side, shown upwards", color: "var(--punch-mark)", kind: "stems", width: 2, ...up },
+    { name: "die side, shown downwards", color: "var(--die-mark)", kind: "stems", width: 2, ...low },
     ...STATES.map(([name, color], k) => ({ name: `friction traction, ${name}`, color, kind: "marks", radius: 2.4, ...friction[k] })),
   ];
   const most = Math.max(10, ...up.y, ...low.y.map(v => -v)), step = ticks(0, most, 3)[1] || 10, end = Math.ceil(most / step) * step;
@@ -65,7 +65,7 @@ function makeCharts() {
   document.getElementById("force-caption").textContent = reference.curve.length
     ? "Beside it code_aster's curve of the same loading without friction: rigid contact at the nodes, hence its saw-tooth. The force near full stroke is steep and varies between solvers."
     : reference.points.length ? "Beside it the reference values of this case; their sources are in the table above." : "Nobody else's values are known for this case.";
-  const energies = [["work of the punch", "external_work_mJ", "#1b2430"], ["plastic", "plastic_dissipation_mJ", "#c2571a"], ["elastic", "strain_energy_mJ", OURS], ["friction", "friction_work_mJ", "#1b7442"], ["compliance of the contact", "compliance_energy_mJ", "#8b95a1"], ["kinetic", "kinetic_energy_mJ", "#8a4fa3"]];
+  const energies = [["work of the punch", "external_work_mJ", "var(--ink)"], ["plastic", "plastic_dissipation_mJ", "var(--theirs)"], ["elastic", "strain_energy_mJ", OURS], ["friction", "friction_work_mJ", "var(--fourth)"], ["compliance of the contact", "compliance_energy_mJ", "var(--faint)"], ["kinetic", "kinetic_energy_mJ", "var(--third)"]];
   new Chart("energies", {
     title: "Energies against the travel of the punch", xLabel: "travel of the punch, mm", yLabel: "energy of the whole sheet, mJ", height: 340, turn: turnTravel, xRange: travelRange,
     series: energies.map(([name, key, color], k) => ({ name, color, width: k ? 1.8 : 2.4, dash: k ? "" : "6 3", x: travels, y: column(key), time: times })),
@@ -74,16 +74,16 @@ function makeCharts() {
   });
   makeBalanceCharts();
   const refused = column("refused_solves"), where = refused.map((n, i) => n > 0 ? i : -1).filter(i => i >= 0), pick = list => where.map(i => list[i]);
-  const marks = list => ({ name: "after refused solves", color: PUNCH_MARK, kind: "marks", radius: 3.4, x: pick(travels), y: pick(list), time: pick(times), of: pick(refused) });
+  const marks = list => ({ name: "after refused solves", color: "var(--punch-mark)", kind: "marks", radius: 3.4, x: pick(travels), y: pick(list), time: pick(times), of: pick(refused) });
   const tip = unit => (s, i) => `${fixed(s.x[i], 2)} mm: ${show(s.y[i])} ${unit}${s.of ? `, ${s.of[i]} refused before` : ""}`;
   const dt = column("dt_ms"), newton = column("newton_iterations");
   new Chart("steps", { title: "Step size", xLabel: "travel of the punch, mm", yLabel: "step, ms", log: true, height: 270, turn: turnTravel, xRange: travelRange, tip: tip("ms"),
     series: [{ name: "step", color: OURS, width: 1.8, x: travels, y: dt, time: times }, marks(dt)], at: (t, row) => ({ x: travel(t), y: row >= 0 ? dt[row] : NaN }) });
   const total = refused.reduce((a, b) => a + b, 0), open = summary.counts.refused_solves - total;
-  document.getElementById("steps-caption").textContent = `Red: steps that were accepted after ${total} refused solves altogether.${open > 0 ? ` ${open} more solves were refused where the run ended.` : ""}`;
+  document.getElementById("steps-caption").textContent = total + open === 0 ? "No solve was refused." : `Red: steps that were accepted after ${total} refused solves altogether.${open > 0 ? ` ${open} more solves were refused where the run ended.` : ""}`;
   new Chart("newton", { title: "Newton iterations", xLabel: "travel of the punch, mm", yLabel: "iterations of the step", height: 270, turn: turnTravel, xRange: travelRange, tip: tip("iterations"),
     series: [{ name: "iterations", color: OURS, kind: "stems", x: travels, y: newton, time: times }, marks(newton)], at: (t, row) => ({ x: travel(t), y: row >= 0 ? newton[row] : NaN }) });
-  pressureChart = new Chart("pressure", { title: "Contact pressure along the sheet", xLabel: "place along the undeformed sheet from its middle, mm", yLabel: "pressure, MPa", height: 250, xRange: [0, model.half_length], series: [],
+  pressureChart = new Chart("pressure", { title: "Contact pressure along the sheet", xLabel: "place along the sheet from its middle, mm", yLabel: "pressure, MPa", height: 250, xRange: [0, model.half_length], series: [],
     tip: (s, i) => `${fixed(s.x[i], 3)} mm: ${fixed(Math.abs(s.y[i]), 1)} MPa`, yTick: v => show(Math.abs(v)) });
 }
 
@@ -100,12 +100,12 @@ function makeBalanceCharts() {
     at: t => ({ x: travel(t) }),
   });
   chart("quasi-static", "Shares of kinetic energy and inertia against the travel of the punch", [
-    ["kinetic energy, of the elastic energy", "#8a4fa3", share(column("kinetic_energy_mJ"), column("strain_energy_mJ"))],
+    ["kinetic energy, of the elastic energy", "var(--third)", share(column("kinetic_energy_mJ"), column("strain_energy_mJ"))],
     ["inertia force, of the largest punch force so far", OURS, share(column("inertia_N"), largestForce)],
   ]);
   chart("balance", "Errors of the balance of energy against the travel of the punch", [
-    ["work without a taker", "#1b7442", column("work_error").map(Math.abs)],
-    ["dissipated by the time integration, of the work", "#8a4fa3", share(dissipated, work)],
+    ["work without a taker", "var(--fourth)", column("work_error").map(Math.abs)],
+    ["dissipated by the time integration, of the work", "var(--third)", share(dissipated, work)],
     ["work less energies: the step's length", THEIRS, column("energy_error").map(Math.abs)],
   ]);
 }
@@ -113,11 +113,12 @@ function makeBalanceCharts() {
 function play() {
   const button = document.getElementById("play");
   let timer = null;
-  const stop = () => { clearInterval(timer); timer = null; button.textContent = "Play"; };
+  const stop = () => { clearInterval(timer); timer = null; button.textContent = "Play"; document.getElementById("readout").setAttribute("aria-live", "polite"); };
   button.addEventListener("click", () => {
     if (timer) return stop();
     if (look.state === states.count - 1) setState(0);
     button.textContent = "Pause";
+    document.getElementById("readout").setAttribute("aria-live", "off");
     timer = setInterval(() => { setState(look.state + 1); if (look.state === states.count - 1) stop(); }, Math.max(30, Math.min(400, 9000 / states.count)));
   });
   return stop;
@@ -150,5 +151,6 @@ look.state = states.times.reduce((best, t, i) => depth(t) > depth(states.times[b
 redraw();
 let waiting = 0;
 window.addEventListener("resize", () => { cancelAnimationFrame(waiting); waiting = requestAnimationFrame(() => redraw()); });
-window.addEventListener("beforeprint", () => { charts.forEach(chart => chart.draw(chart.box.id === "pressure" ? 700 : 340)); drawSheet(true); });
-window.addEventListener("afterprint", () => redraw());
+window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => redraw());
+window.addEventListener("beforeprint", () => { document.documentElement.classList.add("printing"); charts.forEach(chart => chart.draw(chart.box.id === "pressure" ? 700 : 340)); drawSheet(true); });
+window.addEventListener("afterprint", () => { document.documentElement.classList.remove("printing"); redraw(); });

@@ -9,7 +9,8 @@ const COLORS = (() => {
 })();
 // Lengths of the pictures follow from the sheet: how far tools go on beyond it, and what is left free around it.
 const FAR = 10 * model.half_length, MARGIN = model.half_length / 20;
-const PUNCH_MARK = "#d0342c", DIE_MARK = "#2f7fd6";
+// A colour of the style sheet, which a canvas does not know by its name.
+const tone = name => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
 // Both tools from left to right; their last lines go straight on.
 const outlines = (() => {
@@ -54,14 +55,15 @@ function scene(view, box, near) {
   const X = x => width / 2 + (x - mx) * k, Y = y => height / 2 - (y - my) * k;
   const down = depth(states.times[s]);
   c.lineJoin = "round";
+  const ink = tone("ink"), toolLine = tone("faint"), mesh = tone("mesh"), punchMark = tone("punch-mark"), dieMark = tone("die-mark"), halo = tone("page");
   const tool = (line, shift, level, fill) => {
     c.beginPath();
     line.forEach(([x, y], i) => i ? c.lineTo(X(x), Y(y - shift)) : c.moveTo(X(x), Y(y - shift)));
     c.lineTo(X(line[line.length - 1][0]), Y(level)); c.lineTo(X(line[0][0]), Y(level)); c.closePath();
-    c.fillStyle = fill; c.fill(); c.strokeStyle = "#8b95a1"; c.lineWidth = 1.1; c.stroke();
+    c.fillStyle = fill; c.fill(); c.strokeStyle = toolLine; c.lineWidth = 1.1; c.stroke();
   };
-  tool(outlines.die, 0, -FAR, "#dfe3e8"); tool(outlines.punch, down, 2 * FAR, "#e9ecf0");
-  c.strokeStyle = "#aab4bf"; c.setLineDash([6, 4]); c.lineWidth = 1; c.beginPath(); c.moveTo(X(0), 0); c.lineTo(X(0), height); c.stroke(); c.setLineDash([]);
+  tool(outlines.die, 0, -FAR, tone("die")); tool(outlines.punch, down, 2 * FAR, tone("punch"));
+  c.strokeStyle = tone("axis"); c.setLineDash([6, 4]); c.lineWidth = 1; c.beginPath(); c.moveTo(X(0), 0); c.lineTo(X(0), height); c.stroke(); c.setLineDash([]);
   const top = states.fields[look.field].top, n = states.corners, list = states.elements;
   const size = k * model.half_length / model.elements[0], edges = size > 9, pieces = edges ? Math.min(6, Math.max(1, Math.round(size / 10))) : 1;
   for (const side of [1, -1]) for (let e = 0; e < list.length; e += n) {
@@ -88,9 +90,9 @@ function scene(view, box, near) {
       [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].forEach(([a, b], q) => { const p = point(a, b); q ? c.lineTo(...p) : c.moveTo(...p); });
       c.closePath(); c.fill(); c.stroke();
     }
-    if (edges) { c.strokeStyle = "rgba(255,255,255,.38)"; c.lineWidth = 0.7; c.beginPath(); path(c, corner, n); c.stroke(); }
+    if (edges) { c.strokeStyle = mesh; c.lineWidth = 0.7; c.beginPath(); path(c, corner, n); c.stroke(); }
   }
-  c.strokeStyle = "#1b2430"; c.lineWidth = near ? 1.2 : 0.8; c.beginPath();
+  c.strokeStyle = ink; c.lineWidth = near ? 1.2 : 0.8; c.beginPath();
   for (const side of [1, -1]) for (const [a, b, m] of outline) {
     const p = place(s, a), q = place(s, b);
     c.moveTo(X(side * p[0]), Y(p[1]));
@@ -98,7 +100,7 @@ function scene(view, box, near) {
   }
   c.stroke();
   contacts(s, (x, y, upper) => {
-    c.fillStyle = upper ? PUNCH_MARK : DIE_MARK; c.strokeStyle = "#fff"; c.lineWidth = 1;
+    c.fillStyle = upper ? punchMark : dieMark; c.strokeStyle = halo; c.lineWidth = 1;
     for (const side of near ? [1, -1] : [1]) { c.beginPath(); c.arc(X(side * x), Y(y), near ? 3.6 : 2.2, 0, 7); c.fill(); if (near) c.stroke(); }
   });
   return { X, Y, k };
@@ -143,7 +145,7 @@ function wholeBox(width, height) {
 function bar(view, box) {
   // A length to measure by, in the lower right corner.
   const { c, width, height } = view, want = 0.16 * width * box[2], length = [50, 20, 10, 5, 2, 1, 0.5, 0.2].find(l => l <= want) || 0.1, w = length / box[2];
-  c.strokeStyle = c.fillStyle = "#1b2430"; c.lineWidth = 1.5; c.beginPath(); c.moveTo(width - 18 - w, height - 20); c.lineTo(width - 18, height - 20);
+  c.strokeStyle = c.fillStyle = tone("ink"); c.lineWidth = 1.5; c.beginPath(); c.moveTo(width - 18 - w, height - 20); c.lineTo(width - 18, height - 20);
   for (const x of [width - 18 - w, width - 18]) { c.moveTo(x, height - 24); c.lineTo(x, height - 16); }
   c.stroke(); c.font = "12.5px sans-serif"; c.textAlign = "center"; c.fillText(`${length} mm`, width - 18 - w / 2, height - 27);
 }
@@ -158,26 +160,29 @@ function drawSheet(printing) {
   const [fx, fy] = focusPoint(), close = [fx, fy, look.zoom / b.width];
   nearView = { ...scene(b, close, true), box: close };
   const { c } = a, hw = look.zoom / 2, hh = hw * b.height / b.width;
-  c.strokeStyle = "#b3123c"; c.lineWidth = 1.4;
+  c.strokeStyle = tone("frame"); c.lineWidth = 1.4;
   c.strokeRect(wholeView.X(fx - hw), wholeView.Y(fy + hh), 2 * hw * wholeView.k, 2 * hh * wholeView.k);
-  c.fillStyle = "#55606e"; c.font = "13px sans-serif"; c.textAlign = "left";
+  c.fillStyle = tone("soft"); c.font = "13px sans-serif"; c.textAlign = "left";
   c.fillText("die", wholeView.X(Math.min(dieEdge + MARGIN, box[0] + 0.4 * a.width * box[2])), a.height - 14);
   const tip = model.thickness - depth(states.times[look.state]);
   if (wholeView.Y(tip) > 34) c.fillText("punch", wholeView.X(1.2), Math.max(wholeView.Y(tip + 0.24 * model.half_length), 22));
   bar(a, box); bar(b, close);
+  const at = `at a stroke of ${fixed(depth(states.times[look.state]), 2)} mm`;
+  canvas.setAttribute("aria-label", `The sheet between punch and die ${at}, coloured by ${states.fields[look.field].name}`);
+  near.setAttribute("aria-label", `Close-up of the sheet ${at}`);
   document.getElementById("near-caption").textContent = `Close-up, ${show(look.zoom)} mm wide, framed in red on the left. Dots: contact points that carry a force.`;
   document.getElementById("whole-caption").textContent = "True shape, equal scales. Dashed: plane of symmetry. Click to move the close-up.";
   colorBar(printing);
 }
 
 function colorBar(printing) {
-  const canvas = document.getElementById("scale"), { c, width } = prepare(canvas, 44, printing ? 700 : 0), f = states.fields[look.field];
+  const canvas = document.getElementById("scale"), { c, width } = prepare(canvas, 50, printing ? 700 : 0), f = states.fields[look.field];
   const left = 2, right = Math.min(width - 2, 560), X = v => left + v / f.top * (right - left);
   for (let k = 0; k < 256; k++) { c.fillStyle = COLORS[k]; c.fillRect(left + k / 256 * (right - left), 0, (right - left) / 256 + 0.7, 13); }
-  c.fillStyle = "#55606e"; c.strokeStyle = "#8b95a1"; c.font = "12px sans-serif"; c.textAlign = "center";
+  c.fillStyle = tone("soft"); c.strokeStyle = tone("faint"); c.font = "12px sans-serif"; c.textAlign = "center";
   for (const v of ticks(0, f.top, 7)) { c.beginPath(); c.moveTo(X(v), 13); c.lineTo(X(v), 18); c.stroke(); c.textAlign = v === 0 ? "left" : X(v) > right - 14 ? "right" : "center"; c.fillText(show(v), X(v), 31); }
-  c.textAlign = "left"; c.fillStyle = "#1b2430"; c.font = "13px sans-serif";
+  c.textAlign = "left"; c.fillStyle = tone("ink"); c.font = "13px sans-serif";
   let most = 0; for (let n = 0; n < states.nodes; n++) most = Math.max(most, valueAt(look.state, n));
   if (width > right + 250) c.fillText(`${f.name}${f.unit ? `, ${f.unit}` : ""}; here at most ${show(most, 3)}`, right + 16, 11);
-  else c.fillText(`${f.name}${f.unit ? `, ${f.unit}` : ""}; here at most ${show(most, 3)}`, left, 43);
+  else c.fillText(`${f.name}${f.unit ? `, ${f.unit}` : ""}; here at most ${show(most, 3)}`, left, 46);
 }

@@ -1,31 +1,4 @@
 // The tables of the page.
-function table(id, heads, rows) {
-  const made = document.getElementById(id), headed = heads.some(h => h.name);
-  if (!rows.length) { made.closest(".scroll").replaceChildren(element("p", { class: "small", text: "Nothing to show." })); return; }
-  const head = element("tr");
-  heads.forEach(h => head.append(element("th", { scope: "col", class: h.number ? "number" : "", text: h.name })));
-  const body = element("tbody");
-  for (const row of rows) {
-    const line = element("tr", row.failing ? { class: "failing" } : {});
-    row.cells.forEach((cell, i) => {
-      const td = element("td", { class: heads[i].class || (heads[i].number ? "number" : "") });
-      td.append(cell instanceof Node ? cell : String(cell));
-      line.append(td);
-    });
-    body.append(line);
-  }
-  if (headed) made.append(element("thead", {}, head));
-  made.append(body);
-}
-
-const mark = good => element("span", { class: `mark ${good ? "good" : "bad"}`, text: good ? "✓ holds" : "✗ fails" });
-
-function tolerance(t, unit) {
-  if (t === "at_most") return "at most";
-  if (t === "at_least") return "at least";
-  return t.relative !== undefined ? `${show(100 * t.relative)} %` : `± ${show(t.absolute)}${unit && unit !== "1" ? ` ${unit}` : ""}`;
-}
-
 function verdictTable() {
   const heads = [{ name: "Compared with" }, { name: "Quantity" }, { name: "Computed", number: true }, { name: "Value", number: true }, { name: "Tolerance", number: true }, { name: "Unit" }, { name: "Source of the value", class: "source" }, { name: "" }];
   table("verdict-table", heads, summary.verdicts.map(v => {
@@ -42,7 +15,7 @@ const CERTIFICATES = {
   balance_error: ["Punch force less die force and inertia, of the larger", "", "balance"],
   work_error: ["Work of the punch less internal, contact and inertia work", "", "work"],
   energy_error: ["Work of the punch less the energies, of the larger", "", null],
-  residual_norm_mm: ["Residual where Newton stopped", "mm", "newton_residual_mm"],
+  residual_norm_mm: ["Residual where Newton stopped", "mm", "residual_mm"],
 };
 
 function certificateTable() {
@@ -107,18 +80,21 @@ function header() {
 
 function failure() {
   const box = document.getElementById("failure"), d = summary.diagnosis;
-  const list = (items, kind = "ul") => { const made = element(kind); items.forEach(text => made.append(element("li", { text }))); return made; };
+  const list = (items, kind = "ul") => { const made = element(kind); items.forEach(text => made.append(element("li", {}, sentence(text)))); return made; };
   if (summary.status !== "finished") {
+    const paused = summary.status === "interrupted";
     box.hidden = false;
-    box.append(element("h2", { text: "The run did not finish" }));
+    if (paused) box.className = "paused";
+    box.append(element("h2", { text: paused ? "The run was asked to end, and can go on" : "The run did not finish" }));
     if (d) {
       const dl = element("dl", { style: "margin:0" }), add = (name, ...what) => dl.append(element("dt", { text: name }), element("dd", {}, ...what));
-      add("Where", d.place); add("Why", d.cause);
+      add("Where", d.place); add("Why", sentence(d.cause));
       if (d.observed.length) add("What was seen", list(d.observed));
       if (d.tried.length) add("What was tried", list(d.tried));
       if (d.remedies.length) add("What you can do", list(d.remedies, "ol"));
       box.append(dl);
-    } else box.append(element("p", { text: summary.reason || "No reason is known." }));
+    } else box.append(element("p", {}, sentence(summary.reason || "No reason is known.")));
+    if (paused) box.append(element("p", {}, sentence("It goes on with the same options and -restart.")));
     box.append(element("p", { class: "small", text: "Everything below is valid up to the last accepted step." }));
   }
   if (summary.notes && summary.notes.length) {

@@ -1,0 +1,245 @@
+#!/usr/bin/env python3
+"""Gives every option of PETSc that -help lists another value and looks at what that changes.
+
+    scripts/petsc_options.py            all; writes docs/petsc-options.md  (needs: cargo build --release)
+    scripts/petsc_options.py WORD       those with this word in their name, and writes nothing
+
+The program is $SSNP155 or target/release/ssnp155. The options are those that the objects of a run list for each set-up below. What the
+program says of each (src/run/setup/known.rs) is compared with what a short run shows: an option that works has to change the results or
+the text at least in one set-up, one without effect may change nothing but the line that names it, and one that is refused ends with a
+sentence. Nothing may end by a signal or with a traceback. Ends with code 1 if an option does otherwise.
+"""
+import collections
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PROGRAM = os.environ.get("SSNP155", str(ROOT / "target/release/ssnp155"))
+PAGE = ROOT / "docs/petsc-options.md"
+# Ten steps and three refused solves: some options matter only where a solve is refused.
+CASE = ("-sheet_nx 40 -sheet_ny 1 -stroke 0.2 -time_load 6.4 -unload_fraction 0 -report_strokes none -output_every 0 -checkpoint_minutes 0 "
+        "-dt_initial 4 -dt_min 0.1 -newton_max_iterations 3").split()
+# Set-up: options, ranks. In this order, because an option that was seen to work is not tried again.
+SETUPS = {
+    "default": ([], 1),
+    "petsc-lu": (["-pc_type", "lu"], 1),
+    "gmres": (["-pc_type", "bjacobi", "-sub_pc_type", "lu", "-ksp_type", "gmres"], 1),
+    "fastest": (["-options_file", str(ROOT / "inputs/fastest.opts")], 1),
+    "line search": (["-snes_linesearch_type", "l2"], 1),
+    "statics": (["-dynamics", "none"], 1),
+    "friction": (["-friction_coefficient", "0.1342"], 1),
+    "2 ranks": ([], 2),
+}
+# Values of options whose line in the help does not say enough.
+VALUES = {
+    "ts_adapt_clip": "0.5,1.5",
+    "ts_adapt_wnormtype": "infinity",
+    "ts_adapt_safety": "0.5",
+    "ts_adapt_reject_safety": "0.3",
+    "mat_mumps_icntl_20": "0",
+    "ts_time_span": "0,1",
+    "ts_monitor_frequency": "3",
+    "ts_adapt_scale_solve_failed": "0.2",
+    "snes_vi_zero_tolerance": "1e-3",
+    "snes_divergence_tolerance": "1.5",
+    "snes_convergence_test": "skip",
+    "snes_linesearch_damping": "0.5",
+    "ksp_fischer_guess": "1,10",
+    "ksp_guess_type": "fischer",
+    "pc_type": "none",
+    "pc_factor_mat_solver_type": "petsc",
+    "pc_factor_mat_ordering_type": "rcm",
+}
+NAME = re.compile(r"^\s+-(?P<name>[a-z]\w*)(?P<rest>.*)$")
+FAMILY = re.compile(r"(condensed_|sub_|all_)?(ts|snes|ksp|pc|mat|vec)_")
+PREFIX = re.compile(r"^(condensed_|sub_|redundant_|all_)+")
+NOW = re.compile(r"<(?:now )?(?P<now>[^ >:]*)")
+CHOICES = re.compile(r"\((?:choose )?one of\)? (?P<words>[^()]*)")
+UGLY = ["panicked", "PETSC ERROR", "Caught signal", "Segmentation", "core dumped", "Traceback", "MPI_ABORT"]
+PATIENCE = 60.0
+
+
+def run(words, ranks, folder):
+    """Code and text; the code is a word where the program does not end by itself."""
+    start = [PROGRAM] if ranks == 1 else ["mpirun", "--oversubscribe", "-n", str(ranks), PROGRAM]
+    try:
+        ended = subprocess.run([*start, *CASE, *words, "-output_dir", str(folder)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                               timeout=PATIENCE, cwd=folder.parent, stdin=subprocess.DEVNULL)
+        return ended.returncode, ended.stdout.decode(errors="replace")
+    except subprocess.TimeoutExpired as stopped:
+        return "no end", (stopped.stdout or b"").decode(errors="replace")
+
+
+def listed(text):
+    """Names of PETSc's options in a help text, each with the line it stands in; the program's own come before the first rule."""
+    _, _, petscs = text.partition("----------------------------------------")
+    found = collections.OrderedDict()
+    for line in petscs.splitlines():
+        match = NAME.match(line)
+        if match and FAMILY.match(match["name"]):
+            found.setdefault(match["name"], match["rest"])
+    return found
+
+
+def other_value(name, rest):
+    """A value that an option does not have, by what its line in the help says."""
+    bare = PREFIX.sub("", name)
+    if bare in VALUES:
+        return [VALUES[bare]]
+    if re.match(r" (ascii|binary|draw|socket|saws)\[?", rest):
+        return []
+    choices, now = CHOICES.search(rest), NOW.search(rest)
+    if choices:
+        words = choices["words"].split()
+        return [word for word in words if now is None or word.lower() != now["now"].lower()][:1]
+    if now is None:
+        return []
+    value = now["now"]
+    if value in ("TRUE", "FALSE"):
+        return ["false" if value == "TRUE" else "true"]
+    if re.fullmatch(r"-?\d+", value):
+        return ["3" if value == "2" else "2"]
+    try:
+        number = float(value)
+    except ValueError:
+        return ["nothing"]
+    return [repr(number * 1e3 if abs(number) < 1.0 else number / 1e3) if number else "0.5"]
+
+
+def plain(text, folder):
+    """What was said, without what differs between two runs of the same case."""
+    text = text.replace(str(folder), "results")
+    text = re.sub(r"^.*(time  |options left|unused database).*$", "", text, flags=re.MULTILINE)
+    text = re.sub(r"\d+:\d\d(:\d\d)?", "", text)
+    return text
+
+
+def outcome(words, ranks, folder):
+    shutil.rmtree(folder, ignore_errors=True)
+    code, text = run(words, ranks, folder)
+    rows = folder / "history.csv"
+    rows = rows.read_text() if rows.is_file() else ""
+    return code, rows, plain(text, folder)
+
+
+class Base:
+    """What a set-up shows without the option: the run, and its solvers as PETSc views them."""
+
+    VIEWS = "-ts_view -snes_view -ksp_view ::ascii_info_detail -condensed_ksp_view ::ascii_info_detail".split()
+
+    def __init__(self, name, folder):
+        words, self.ranks = SETUPS[name]
+        self.words = [*words, *self.VIEWS]
+        self.folder = folder
+        self.code, self.rows, self.said = outcome(self.words, self.ranks, folder)
+        if outcome(self.words, self.ranks, folder)[1:] != (self.rows, self.said):
+            sys.exit(f"set-up {name}: two runs without any option differ, so nothing can be seen")
+
+    def listed(self):
+        return listed(run([*self.words, "-help"], self.ranks, self.folder)[1])
+
+    def tried(self, words):
+        """What the program says becomes of the option, what was seen, and what is wrong with that."""
+        option = words[0]
+        trace = self.folder.parent / "SA-data"
+        shutil.rmtree(trace, ignore_errors=True)
+        code, rows, said = outcome([*self.words, *words], self.ranks, self.folder)
+        if option in self.VIEWS:
+            return "works", "text", []
+        if trace.exists():
+            return "works", "files", []
+        flat = " ".join(said.split())
+        problems = [word for word in UGLY if word in said]
+        if code == 2 and f"ssnp155: option {option}" in flat:
+            return "refused", re.search(rf"ssnp155: option {option}[^:]*: (.*?); leave it out", flat + "; leave it out")[1], problems
+        if code == 2 and "ssnp155: PETSc error" in flat:
+            return "refused", "by PETSc: " + re.search(r"PETSc error \d+: (.*?); if a value", flat)[1], problems
+        if code not in (0, 1):
+            return "works", f"code {code}", [*problems, f"code {code}: {flat[-200:]}"]
+        if f"option {option} is not known" in flat:
+            problems.append("it has no row in src/run/setup/known.rs")
+        silent = re.search(rf"option {option} has no effect,? ?(.*?)(?= (warning|note): | done left)", flat)
+        if silent:
+            if rows != self.rows:
+                problems.append("it is said to have no effect, and the results change")
+            return "no effect", silent[1], problems
+        rare = re.search(rf"option {option} matters only where (.*?)(?= (warning|note): | done left)", flat)
+        if rows != self.rows:
+            return "works", "results", problems
+        if rare:
+            return "works", "only where " + rare[1], problems
+        return "works", "text" if said != self.said else "", problems
+
+
+def main():
+    chosen = sys.argv[1] if len(sys.argv) > 1 else ""
+    work = pathlib.Path(tempfile.mkdtemp(prefix="ssnp155-petsc-options-"))
+    found, wrong = {}, 0
+    for setup in SETUPS:
+        base = Base(setup, work / "results")
+        for name, rest in base.listed().items():
+            seen = found.setdefault(name, {})
+            if chosen not in name or any(fate == "refused" or fate == "works" and what for fate, what in seen.values()):
+                continue
+            words = [f"-{name}", *other_value(name, rest)]
+            fate, what, problems = base.tried(words)
+            if "2 ranks" == setup and seen and not problems and fate == "no effect":
+                continue
+            seen[setup] = (fate, what)
+            wrong += bool(problems)
+            print(f"{'WRONG' if problems else 'good '} {setup:12} {' '.join(words):50} {fate}: {what} {'; '.join(problems)}", flush=True)
+    for name, seen in found.items():
+        if seen and all(fate == "works" and not what for fate, what in seen.values()):
+            wrong += 1
+            print(f"WRONG -{name} is said to work, and nothing was seen to change")
+    print(f"{len(found)} options, {wrong} not as they have to be")
+    if not chosen and not wrong:
+        write_page(found)
+    return 1 if wrong else 0
+
+
+SEEN = {"results": "other results", "files": "files beside the results", "text": "other text, of its own or in PETSc's view of the solvers"}
+
+
+def write_page(found):
+    groups = collections.OrderedDict()
+    for name, seen in found.items():
+        refused = next((what for fate, what in seen.values() if fate == "refused"), None)
+        works = next(((setup, what) for setup, (fate, what) in seen.items() if fate == "works"), None)
+        silent = collections.OrderedDict((what, None) for fate, what in seen.values() if fate == "no effect")
+        if not seen:
+            continue
+        if refused:
+            cells = "refused", refused
+        elif works:
+            setup, what = works
+            with_ = "" if setup == "default" else f" with {setup}"
+            cells = "works" + (", else no effect" if silent else ""), "; ".join([SEEN.get(what, what) + with_, *silent])
+        else:
+            cells = "no effect", "; ".join(silent)
+        groups.setdefault(cells, []).append(name)
+    version = re.search(r"Release Version ([\d.]+)", subprocess.run([PROGRAM, "-version", "-help"], capture_output=True, text=True).stdout)
+    text = ("# PETSc's options\n\n<!-- Written by scripts/petsc_options.py; changes by hand are lost. -->\n\n"
+            f"Every option that PETSc{' ' + version[1] if version else ''} lists with `-help` for the time stepper, the nonlinear and the linear solvers, the\n"
+            "preconditioners and matrices of a run, and what becomes of it. `scripts/petsc_options.py` gave each another value in a short run and\n"
+            "looked at what changed; the program says the same at the start of a run. With `cargo test` a test fails where `-help` lists an option\n"
+            "that has no row in `src/run/setup/known.rs`. An option of another version of PETSc that is not here is named by a note at the start.\n\n"
+            "Set-ups: " + ", ".join(f"{name} (`{' '.join(words).replace(str(ROOT) + '/', '')}`)" if words else name for name, (words, _) in SETUPS.items()) + ".\n")
+    for fate in ["works", "works, else no effect", "no effect", "refused"]:
+        rows = [(what, names) for (which, what), names in groups.items() if which == fate]
+        if rows:
+            text += f"\n## {fate[0].upper()}{fate[1:]}\n\n| options | {'seen' if fate.startswith('works') else 'why'} |\n|---|---|\n"
+            text += "".join(f"| {' '.join(f'`-{name}`' for name in names)} | {what} |\n" for what, names in rows)
+    untried = [f"`-{name}`" for name, seen in found.items() if not seen]
+    if untried:
+        text += "\n## Listed, and not tried yet\n\n" + " ".join(untried) + "\n"
+    PAGE.write_text(text)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
