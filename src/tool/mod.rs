@@ -10,4 +10,4 @@ mod profile;
 pub use benchmark::{die, punch};
 pub use motion::{Motion, PunchMotion};
 pub use piece::{Distance, Piece};
-pub use profile::{Profile, ProfileError};
+pub use profile::{DistanceSlope, Profile, ProfileError, ProfileSlope};
