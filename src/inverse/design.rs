@@ -1,4 +1,5 @@
-//! A tool that gives the released sheet a wanted angle, with the least change from the start.
+//! A tool that gives the released sheet a wanted angle, with the least change from the start; on the mesh of the case first, then
+//! on a finer one.
 //!
 //! Minimised is the sum of the squares of the changes, each as a share of the width of its bounds; the angle is linear in
 //! them to first order, with slopes that every run makes better (Broyden 1965, Math. Comp. 19, 577-593; with one parameter
@@ -40,6 +41,8 @@ pub(super) struct Trial {
     /// Derivatives of the angle by them, degrees, where the run has them.
     #[serde(skip)]
     slopes: Vec<Option<f64>>,
+    /// How much finer than that of the case the mesh is.
+    pub refinement: usize,
     pub values: Vec<f64>,
     pub angle_deg: f64,
     pub folder: String,
@@ -62,6 +65,8 @@ struct Search {
     start: Vec<f64>,
     lower: Vec<f64>,
     upper: Vec<f64>,
+    /// How much finer than that of the case the mesh is now.
+    refinement: usize,
     trials: Vec<Trial>,
 }
 
@@ -79,7 +84,7 @@ pub(super) fn design(
     refuse_bad_options(case, comm)?;
     let runs = Runs::new(&withdrawn(case)?, session, comm)?;
     let mut search = Search::new(runs, wanted, case.inverse.tolerance);
-    let found = match search.look() {
+    let found = match search.look(case.inverse.refinement) {
         Ok(found) => found,
         Err(InverseError::Interrupted) => {
             let made = search.runs.made();
@@ -91,14 +96,6 @@ pub(super) fn design(
     let Some(best) = search.best().cloned() else {
         let folder = search.runs.folder().file("run-001").display().to_string();
         return Err(InverseError::NoStart { folder });
-    };
-    let refinement = case.inverse.refinement;
-    let confirmation = match found {
-        Found::Within if refinement > 1 => {
-            let ran = search.runs.confirm(&best.values, refinement)?;
-            ran.and_then(|ran| search.angle(&ran))
-        }
-        _ => None,
     };
     let design = design_report::Design {
         wanted_deg: wanted,
@@ -114,8 +111,6 @@ pub(super) fn design(
             .collect(),
         start: search.start.clone(),
         best,
-        refinement,
-        confirmation_deg: confirmation,
         trials: search.trials.clone(),
     };
     let mine = match comm.rank() {
@@ -158,6 +153,7 @@ impl Search {
             start,
             wanted,
             tolerance,
+            refinement: 1,
             trials: Vec::new(),
             runs,
         }
@@ -168,10 +164,22 @@ impl Search {
         trial.angle_deg - self.wanted
     }
 
-    /// The run that came nearest.
+    /// The runs on the present mesh.
+    fn here(&self) -> impl Iterator<Item = &Trial> {
+        let finer = self.refinement;
+        self.trials
+            .iter()
+            .filter(move |trial| trial.refinement == finer)
+    }
+
+    /// The run on the finest mesh there is that came nearest.
     fn best(&self) -> Option<&Trial> {
-        let by_miss = |a: &&Trial, b: &&Trial| self.miss(a).abs().total_cmp(&self.miss(b).abs());
-        self.trials.iter().min_by(by_miss)
+        let finest = self.trials.last()?.refinement;
+        let on_finest = self
+            .trials
+            .iter()
+            .filter(|trial| trial.refinement == finest);
+        on_finest.min_by(|a, b| self.miss(a).abs().total_cmp(&self.miss(b).abs()))
     }
 
     fn is_found(&self) -> bool {
@@ -179,22 +187,37 @@ impl Search {
             .is_some_and(|best| self.miss(best).abs() <= self.tolerance)
     }
 
-    fn look(&mut self) -> Result<Found, InverseError> {
-        match self.steps() {
+    fn look(&mut self, refinement: usize) -> Result<Found, InverseError> {
+        match self.steps(refinement) {
             Err(InverseError::RunsUsedUp) => Ok(Found::RunsUsedUp),
             ended => ended,
         }
     }
 
-    fn steps(&mut self) -> Result<Found, InverseError> {
+    fn steps(&mut self, refinement: usize) -> Result<Found, InverseError> {
+        let (found, slopes) = self.on_first_mesh()?;
+        match self.best().cloned() {
+            Some(best) if found == Found::Within && refinement > 1 => {
+                self.refinement = refinement;
+                match self.run(&best.change)? {
+                    Some(there) => Ok(self.approach(there, slopes)?.0),
+                    None => Ok(Found::RunsUsedUp),
+                }
+            }
+            _ => Ok(found),
+        }
+    }
+
+    /// Also the slopes of the angle.
+    fn on_first_mesh(&mut self) -> Result<(Found, Vec<f64>), InverseError> {
         let n = self.start.len();
-        let Some(mut here) = self.run(&vec![0.0; n])? else {
-            return Ok(Found::RunsUsedUp);
-        };
         let mut slopes = vec![0.0; n];
+        let Some(here) = self.run(&vec![0.0; n])? else {
+            return Ok((Found::RunsUsedUp, slopes));
+        };
         for k in 0..n {
             if self.is_found() {
-                return Ok(Found::Within);
+                break;
             }
             if let Some(slope) = here.slopes[k] {
                 slopes[k] = slope;
@@ -210,15 +233,24 @@ impl Search {
             slopes[k] = (there.angle_deg - here.angle_deg) / there.change[k];
         }
         // The model goes through the start; with one parameter the last run is as good.
+        self.approach(here, slopes)
+    }
+
+    /// From a run on the present mesh to the angle. Also the slopes in the end.
+    fn approach(
+        &mut self,
+        mut here: Trial,
+        mut slopes: Vec<f64>,
+    ) -> Result<(Found, Vec<f64>), InverseError> {
         while !self.is_found() {
             let (change, reachable) = self.next(&here, &slopes);
             let known = |trial: &Trial| distance(&trial.change, &change) < SAME;
-            if self.trials.iter().any(known) {
-                return Ok(if reachable {
-                    Found::RunsUsedUp
-                } else {
-                    Found::OutOfReach
-                });
+            if self.here().any(known) {
+                let found = match reachable {
+                    true => Found::RunsUsedUp,
+                    false => Found::OutOfReach,
+                };
+                return Ok((found, slopes));
             }
             let there = self.run_nearer(change, &here)?;
             let step: Vec<f64> = there
@@ -236,7 +268,7 @@ impl Search {
             }
             here = there;
         }
-        Ok(Found::Within)
+        Ok((Found::Within, slopes))
     }
 
     /// Where to go by the linear model at `here`, and whether it reaches the angle within the bounds; between the two
@@ -245,10 +277,7 @@ impl Search {
         let wanted = dot(slopes, &here.change) - self.miss(here);
         let (change, reachable) = least_change(slopes, wanted, &self.lower, &self.upper);
         let nearest = |side: f64| {
-            let on_side = self
-                .trials
-                .iter()
-                .filter(|trial| self.miss(trial) * side > 0.0);
+            let on_side = self.here().filter(|trial| self.miss(trial) * side > 0.0);
             on_side.min_by(|a, b| self.miss(a).abs().total_cmp(&self.miss(b).abs()))
         };
         let (Some(below), Some(above)) = (nearest(-1.0), nearest(1.0)) else {
@@ -256,7 +285,7 @@ impl Search {
         };
         let leaves =
             |k: usize| (change[k] - below.change[k]) * (change[k] - above.change[k]) >= 0.0;
-        let stalls = match &self.trials[..] {
+        let stalls = match &self.here().collect::<Vec<_>>()[..] {
             [.., before, last] => self.miss(last).abs() > PROGRESS * self.miss(before).abs(),
             _ => false,
         };
@@ -288,7 +317,7 @@ impl Search {
             rounded(start + part * width(sought), DIGITS).clamp(sought.lower, sought.upper)
         };
         let values: Vec<f64> = parameters.map(value).collect();
-        let ran = self.runs.next(&values, true)?;
+        let ran = self.runs.next(&values, self.refinement, true)?;
         let Some((ran, angle_deg)) = ran.and_then(|ran| self.angle(&ran).map(|angle| (ran, angle)))
         else {
             self.runs.show("  not solved to its end\n");
@@ -298,6 +327,7 @@ impl Search {
             .show(&format!("  angle {} deg\n", number(angle_deg)));
         let trial = Trial {
             slopes: self.slopes(&ran),
+            refinement: self.refinement,
             change: change.to_vec(),
             values,
             angle_deg,

@@ -8,5 +8,5 @@ mod von_mises;
 
 pub use hardening::Hardening;
 pub use von_mises::{
-    DeformationError, MaterialSlope, PointState, Response, ResponseSlope, VonMises,
+    DeformationError, Linearised, MaterialSlope, PointState, Response, ResponseSlope, VonMises,
 };

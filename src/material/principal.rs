@@ -26,13 +26,17 @@ pub(super) struct PrincipalSlope {
 }
 
 impl PrincipalStrains {
-    /// Derivatives from that of the tensor.
-    pub fn slope(&self, tensor: &PlaneTensor) -> PrincipalSlope {
+    /// The squared stretches.
+    pub fn squared(&self) -> [f64; 3] {
+        self.strain.map(|e| (2.0 * e).exp())
+    }
+
+    /// Derivatives from that of the tensor, with the [`PrincipalStrains::squared`] stretches.
+    pub fn slope(&self, tensor: &PlaneTensor, squared: &[f64; 3]) -> PrincipalSlope {
         let [cos, sin] = self.axis;
         let centre = 0.5 * (tensor.xx + tensor.yy);
         let difference = 0.5 * (tensor.xx - tensor.yy);
         let half = difference * cos + tensor.xy * sin;
-        let squared = self.strain.map(|e| (2.0 * e).exp());
         let values = [centre + half, centre - half, tensor.zz];
         PrincipalSlope {
             strain: std::array::from_fn(|a| 0.5 * values[a] / squared[a]),

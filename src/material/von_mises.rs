@@ -7,7 +7,7 @@
 
 mod slope;
 
-pub use slope::{MaterialSlope, ResponseSlope};
+pub use slope::{Linearised, MaterialSlope, ResponseSlope};
 
 use super::Hardening;
 use super::principal::PrincipalStrains;

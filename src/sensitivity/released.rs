@@ -74,6 +74,7 @@ impl Sensitivity {
         };
         let tangent = Tangent {
             system,
+            entries: &entries,
             solve: state.solve,
             closed: &[],
             scheme: None,
@@ -81,8 +82,7 @@ impl Sensitivity {
         for (tracked, angle) in self.tracked.iter().zip(angles) {
             // The nodes are those of the sheet with its tools, and so is their variation.
             let history = tracked.history.without_contact();
-            let (unknowns, solves) =
-                tracked.improve(&step, &tangent, system.vector()?, &history)?;
+            let (unknowns, solves) = tracked.solve(&step, &tangent, system.vector()?, &history)?;
             self.cost.solves += solves;
             let du = system.local_values(&unknowns)?;
             [_, *angle] = tracked.variation.shape_slopes(&step, &du).over_ranks(comm);

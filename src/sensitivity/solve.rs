@@ -3,17 +3,17 @@
 use petsc::{Vector, VectorRef};
 
 use super::tracked::{Scheme, Tracked};
-use crate::system::{CondensedSolve, EvaluatedStep, History, System};
+use crate::system::{CondensedSolve, EvaluatedStep, History, JacobianEntries, System};
 
-/// A solve that adds no more than this share of the whole ends it: its own error is that of a direct solve, 1e-8 of what it adds in
-/// a thin sheet, which is a thousand times stiffer along than across.
-const ADDS_LITTLE: f64 = 0.1;
-/// Solves at most: each but the first adds 1e-8 of the one before.
+/// A solve that adds no more than this share of the whole is the last one. What a direct solve adds is known to 1e-8 in a
+/// thin sheet, which is a thousand times stiffer along than across.
+const ADDS_LITTLE: f64 = 0.2;
 const MOST_SOLVES: u64 = 3;
 
-/// The tangent of a converged state, factorised.
+/// The tangent of a converged state, and its factors.
 pub(super) struct Tangent<'a> {
     pub system: &'a System,
+    pub entries: &'a JacobianEntries,
     pub solve: &'a CondensedSolve,
     /// Ascending global rows of this rank's gaps that are closed.
     pub closed: &'a [i32],
@@ -22,31 +22,32 @@ pub(super) struct Tangent<'a> {
 }
 
 impl Tracked {
-    /// The derivatives of the unknowns from a `guess` at them, where the history before the step moves by `history`: iterative
-    /// refinement. Also the number of solves. Collective.
-    pub fn improve(
+    /// The derivatives of the unknowns from a `guess` at them, where the history before the step moves by `history`, and the
+    /// number of solves: iterative refinement. Collective.
+    pub fn solve(
         &self,
         step: &EvaluatedStep<'_>,
         tangent: &Tangent<'_>,
         mut guess: Vector,
         history: &History,
     ) -> petsc::Result<(Vector, u64)> {
-        let system = tangent.system;
+        let Tangent {
+            system, entries, ..
+        } = tangent;
         let mut acceleration = system.vector()?;
+        if let Some(scheme) = tangent.scheme {
+            self.held_acceleration(scheme, system.owned_displacements(), &mut acceleration)?;
+        }
+        let a = system.local_values(&acceleration)?;
+        let mut held = vec![0.0; a.len()];
+        self.variation.residual_slope(step, history, &a, &mut held);
         let mut right_side = system.vector()?;
-        let mut shares = vec![0.0; system.local().unknown_count()];
+        tangent.hold(&mut guess)?;
         let mut solves = 0;
         loop {
-            if let Some(scheme) = tangent.scheme {
-                let displacements = system.owned_displacements();
-                self.stage_acceleration(scheme, &guess, displacements, &mut acceleration)?;
-            }
-            let (du, a) = (
-                system.local_values(&guess)?,
-                system.local_values(&acceleration)?,
-            );
-            self.variation
-                .residual_slope(step, history, &du, &a, &mut shares);
+            let mut shares = held.clone();
+            let moved = system.local_values(&guess)?;
+            entries.add_product(system.local(), &moved, &mut shares);
             system.sum_of_shares(&shares, &mut right_side)?;
             right_side.scale(-1.0)?;
             let added = tangent.on_reduced_set(&right_side)?;
@@ -60,6 +61,18 @@ impl Tracked {
 }
 
 impl Tangent<'_> {
+    /// Takes the gaps that are closed out of the derivatives of the unknowns.
+    fn hold(&self, unknowns: &mut VectorRef) -> petsc::Result<()> {
+        let first = unknowns.ownership_range()?.start;
+        let mut write = unknowns.write()?;
+        for row in self.closed {
+            if let Ok(own) = usize::try_from(row - first) {
+                write[own] = 0.0;
+            }
+        }
+        Ok(())
+    }
+
     /// Solves for the right-hand side `r`, whose entries at the closed gaps do not count: these stay as they are. Collective.
     fn on_reduced_set(&self, r: &VectorRef) -> petsc::Result<Vector> {
         let Self { system, solve, .. } = self;

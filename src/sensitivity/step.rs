@@ -146,6 +146,7 @@ impl Sensitivity {
         };
         let tangent = Tangent {
             system: &system,
+            entries: &self.entries,
             solve: &self.solve,
             closed: &closed,
             scheme: scheme.as_ref(),
@@ -195,9 +196,8 @@ impl Tracked {
         cost: &mut Cost,
     ) -> petsc::Result<(Slopes, u32)> {
         let system = tangent.system;
-        let local = system.local_values(&self.unknowns)?;
-        let guess = system.own_values(&system.local().limited_guess(step, local))?;
-        let (unknowns, solves) = self.improve(step, tangent, guess, &self.history)?;
+        let guess = self.guess(tangent.scheme, system.owned_displacements())?;
+        let (unknowns, solves) = self.solve(step, tangent, guess, &self.history)?;
         cost.solves += solves;
         let du = system.local_values(&unknowns)?;
         let advanced = self.variation.advance(step, &du, &mut self.history);

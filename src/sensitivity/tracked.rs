@@ -63,24 +63,36 @@ impl Tracked {
         })
     }
 
-    /// Derivative of the acceleration in the equations of a step to `unknowns` with these derivatives, for the `count`
-    /// displacements this rank owns.
-    pub fn stage_acceleration(
+    /// Derivative of the acceleration in the equations of a step to held unknowns, for the `count` displacements this rank
+    /// owns.
+    pub fn held_acceleration(
         &self,
         scheme: &Scheme,
-        unknowns: &Vector,
         count: usize,
         out: &mut Vector,
     ) -> petsc::Result<()> {
-        let (before, end) = (self.unknowns.read()?, unknowns.read()?);
+        let u = self.unknowns.read()?;
         let (v, a) = (self.velocity.read()?, self.acceleration.read()?);
         let mut out = out.write()?;
         let alpha = scheme.parameters.alpha_m;
         for i in 0..count {
-            let end = scheme.end_acceleration(end[i] - before[i], v[i], a[i]);
+            let end = scheme.end_acceleration(-u[i], v[i], a[i]);
             out[i] = a[i] + alpha * (end - a[i]);
         }
         Ok(())
+    }
+
+    /// A guess at the derivatives of the unknowns at the end of a step, for the `count` displacements this rank owns: on at
+    /// the velocity.
+    pub fn guess(&self, scheme: Option<&Scheme>, count: usize) -> petsc::Result<Vector> {
+        let mut guess = self.unknowns.to_owned()?;
+        if let Some(scheme) = scheme {
+            let (v, mut guess) = (self.velocity.read()?, guess.write()?);
+            for i in 0..count {
+                guess[i] += scheme.dt * v[i];
+            }
+        }
+        Ok(guess)
     }
 
     /// Takes the derivatives of the unknowns at the end of a step over.

@@ -4,7 +4,7 @@
 //! (nodes, constants, tools), is the difference of the two problems beside it, the same on every rank.
 
 use mpi::traits::Communicator;
-use petsc::{Vector, VectorRef};
+use petsc::VectorRef;
 
 use super::System;
 use super::evaluated::EvaluatedStep;
@@ -69,25 +69,6 @@ impl System {
         self.ghosts.reverse_add(shares, out)
     }
 
-    /// The vector with these local values, of which each rank has its own. Collective.
-    ///
-    /// # Errors
-    /// If PETSc fails.
-    pub fn own_values(&self, local: &[f64]) -> petsc::Result<Vector> {
-        let mut all = self.vector()?;
-        let first = all.ownership_range()?.start;
-        let mut write = all.write()?;
-        for (value, row) in local.iter().zip(self.local().rows()) {
-            if let Ok(own) = usize::try_from(row - first)
-                && let Some(entry) = write.get_mut(own)
-            {
-                *entry = *value;
-            }
-        }
-        drop(write);
-        Ok(all)
-    }
-
     /// Global rows of this rank's gaps that are closed by a contact force at the converged unknowns `u` (local), ascending.
     pub fn closed_gaps(&self, u: &[f64]) -> Vec<i32> {
         let local = self.local();
@@ -100,19 +81,6 @@ impl System {
 }
 
 impl Subdomain {
-    /// Leaves of the derivatives of the unknowns before a step (local) what can be a guess at those after it: gaps stay, and an
-    /// open point carries nothing.
-    pub fn limited_guess(&self, step: &EvaluatedStep<'_>, mut guess: Vec<f64>) -> Vec<f64> {
-        for point in 0..self.contacts.len() {
-            let m = self.multiplier(point);
-            guess[m + 1] = 0.0;
-            if !self.carries(step.u, point) {
-                guess[m] = 0.0;
-            }
-        }
-        guess
-    }
-
     /// Whether a contact point carries a force at converged unknowns.
     fn carries(&self, u: &[f64], point: usize) -> bool {
         let m = self.multiplier(point);
@@ -177,23 +145,25 @@ impl Variation {
         History::still(of, of.contacts.iter().map(friction).collect())
     }
 
-    /// The derivative of this rank's share of the residual, where the history before the step moves by `history`, the
-    /// unknowns by `du` and the accelerations by `a` (local). Open contact points, which take no part in equilibrium, are left
+    /// The derivative of this rank's share of the residual at held unknowns, where the history before the step moves by
+    /// `history` and the accelerations by `a` (local). Open contact points, which take no part in equilibrium, are left
     /// out.
     pub fn residual_slope(
         &self,
         step: &EvaluatedStep<'_>,
         history: &History,
-        du: &[f64],
         a: &[f64],
         out: &mut [f64],
     ) {
-        let of = step.of;
+        let (of, held) = (step.of, vec![0.0; out.len()]);
         out.fill(0.0);
-        self.add_force_slopes(step, history, du, out);
+        self.add_force_slopes(step, history, out);
         self.add_inertia_slopes(step, a, out);
         for point in (0..of.contacts.len()).filter(|&point| of.carries(step.u, point)) {
-            let (slope, m) = (self.contact(step, point, du, history), of.multiplier(point));
+            let (slope, m) = (
+                self.contact(step, point, &held, history),
+                of.multiplier(point),
+            );
             for (i, force) in slope.force.iter().enumerate() {
                 out[2 * of.contacts[point].nodes[i / 2] + i % 2] += force;
             }
@@ -204,29 +174,26 @@ impl Variation {
         }
     }
 
-    fn add_force_slopes(
-        &self,
-        step: &EvaluatedStep<'_>,
-        history: &History,
-        du: &[f64],
-        out: &mut [f64],
-    ) {
-        let of = step.of;
+    fn add_force_slopes(&self, step: &EvaluatedStep<'_>, history: &History, out: &mut [f64]) {
+        let (of, held) = (step.of, [[0.0; 2]; 8]);
         let scale = 1.0 / of.problem.young_modulus;
-        let is_still =
-            du.iter().all(|d| *d == 0.0) && self.mesh.is_none() && self.material.is_zero();
+        let is_still = self.mesh.is_none() && self.material.is_zero();
         for (element, nodes) in of.connectivity.iter().enumerate() {
             let states = history.element(element);
             if is_still && states.iter().all(|state| *state == PointState::STILL) {
                 continue;
             }
-            let (moved, moves) = (of.element_values(element, du), self.element(element));
+            let moves = self.element(element);
             for (k, (at, before)) in step.points(element).iter().zip(states).enumerate() {
-                let motion = at.motion(k, &moved, moves);
+                let motion = at.motion(k, &held, moves);
                 let slope = at
                     .response
                     .slope(&motion.deformation, before, &self.material);
-                let stress = less(slope.kirchhoff, self.young, at.response.kirchhoff);
+                let stress = less(
+                    slope.kirchhoff,
+                    self.young,
+                    at.response.response().kirchhoff,
+                );
                 for (&n, force) in nodes.iter().zip(at.force_slope(&motion, &stress)) {
                     out[2 * n] += scale * force[0];
                     out[2 * n + 1] += scale * force[1];
@@ -298,7 +265,7 @@ impl Variation {
             for (k, (at, state)) in step.points(element).iter().zip(states).enumerate() {
                 let excess = at.excess;
                 let near = excess.abs() < NEAR;
-                if !at.response.yields() && !near {
+                if !at.response.response().yields() && !near {
                     continue;
                 }
                 let motion = at.motion(k, &moved, moves);

@@ -8,7 +8,7 @@
 //! ```
 
 use super::{Quad8, spatial_gradients};
-use crate::material::Response;
+use crate::material::{Linearised, Response};
 use crate::plane::{Matrix, PlaneTensor, Vector, product};
 
 /// How the reference geometry of an element moves with a parameter.
@@ -25,7 +25,7 @@ pub struct Quad8Slope {
 #[derive(Clone, Debug)]
 pub struct EvaluatedPoint {
     /// What the material answers.
-    pub response: Response,
+    pub response: Linearised,
     /// How far beyond the yield surface the trial stress is, as a share of the flow stress.
     pub excess: f64,
     deformation: Matrix,
@@ -77,7 +77,7 @@ impl Quad8 {
     ) -> EvaluatedPoint {
         let (gradients, volume) = &self.points[point];
         EvaluatedPoint {
-            response,
+            response: response.linearised(),
             excess,
             gradients: spatial_gradients(gradients, &deformation),
             deformation,
@@ -113,7 +113,7 @@ impl EvaluatedPoint {
     /// stress.
     pub fn force_slope(&self, motion: &PointMotion, stress: &PlaneTensor) -> [Vector; 8] {
         let (tau, by) = (
-            self.response.kirchhoff.in_plane().rows(),
+            self.response.response().kirchhoff.in_plane().rows(),
             stress.in_plane().rows(),
         );
         let along = |i: usize, j: usize| {
@@ -188,7 +188,8 @@ mod tests {
             let at = here.evaluated(point, response, f, 0.0);
             yields += usize::from(response.yields());
             let motion = at.motion(point, &du, Some(&moves));
-            let stress = response
+            let stress = at
+                .response
                 .slope(&motion.deformation, &PointState::STILL, &by)
                 .kirchhoff;
             for (sum, force) in exact.iter_mut().zip(at.force_slope(&motion, &stress)) {

@@ -11,7 +11,6 @@
 //! and an isotropic function of b with the principal values v_a, in the axes of b, has dv_a on the diagonal and
 //! (v₁ - v₂)/(λ₁ - λ₂) db₁₂ off it.
 
-use super::super::principal::PrincipalSlope;
 use super::{Hardening, PointState, Response, VonMises, pull_back};
 use crate::plane::{self, Matrix, PlaneTensor};
 
@@ -22,6 +21,29 @@ pub struct MaterialSlope {
     shear: f64,
     /// The hardening law with more and with less of the parameter, and how far apart these are; none where it stays.
     laws: Option<([Hardening; 2], f64)>,
+}
+
+/// An answer with what its derivatives by all parameters have in common.
+#[derive(Clone, Copy, Debug)]
+pub struct Linearised {
+    response: Response,
+    /// Squared trial stretches.
+    squared: [f64; 3],
+    trial_stress: f64,
+    /// C_p⁻¹ Fᵀ before.
+    right: Matrix,
+    yielded: Option<Yielded>,
+}
+
+/// The same of a point that yields.
+#[derive(Clone, Copy, Debug)]
+struct Yielded {
+    /// Squared elastic stretches.
+    squared: [f64; 3],
+    /// (exp 2ε_e1 - exp 2ε_e2) (λ₁ + λ₂)/(λ₁ - λ₂).
+    twist: f64,
+    /// C_p⁻¹ Fᵀ after.
+    right: Matrix,
 }
 
 /// Derivatives of an answer.
@@ -70,15 +92,15 @@ impl VonMises {
     /// Derivative of the excess, with the derivatives of the response and of the state `before`.
     pub fn excess_slope(
         &self,
-        response: &Response,
+        of: &Linearised,
         slope: &ResponseSlope,
         before: &PointState,
         by: &MaterialSlope,
     ) -> f64 {
-        let p = response.before.equivalent_plastic_strain;
+        let p = of.response.before.equivalent_plastic_strain;
         let (flow_stress, hardening) = self.hardening.yield_stress(p);
         let moved = hardening * before.equivalent_plastic_strain + by.flow_stress(p);
-        (slope.trial_stress - response.trial_stress() / flow_stress * moved) / flow_stress
+        (slope.trial_stress - of.trial_stress / flow_stress * moved) / flow_stress
     }
 }
 
@@ -100,6 +122,44 @@ impl Response {
         self.moduli[1] * (6.0 * self.norm_squared).sqrt()
     }
 
+    /// Ready to be differentiated.
+    pub fn linearised(self) -> Linearised {
+        Linearised {
+            squared: self.trial.squared(),
+            trial_stress: self.trial_stress(),
+            right: times_transpose(&self.before.cp_inverse, &self.deformation_gradient),
+            yielded: self.yields().then(|| self.yielded()),
+            response: self,
+        }
+    }
+
+    fn yielded(&self) -> Yielded {
+        let squared = self
+            .deviator
+            .map(|e| (2.0 * (self.mean + self.theta * e)).exp());
+        let f = &self.deformation_gradient;
+        // ε_e1 - ε_e2 = θ (ε₁ - ε₂), and (λ₁ - λ₂)/(λ₁ + λ₂) = tanh(ε₁ - ε₂).
+        let difference = self.trial.strain[0] - self.trial.strain[1];
+        let ratio = if difference > 0.0 {
+            (self.theta * difference).sinh() / difference.tanh()
+        } else {
+            self.theta
+        };
+        let state = pull_back(f, self.determinant, &self.trial.tensor(squared));
+        Yielded {
+            twist: 2.0 * (squared[0] * squared[1]).sqrt() * ratio,
+            right: times_transpose(&state, f),
+            squared,
+        }
+    }
+}
+
+impl Linearised {
+    /// The answer.
+    pub fn response(&self) -> &Response {
+        &self.response
+    }
+
     /// Derivatives along those of the deformation gradient, of the state before and of the constants.
     pub fn slope(
         &self,
@@ -107,40 +167,38 @@ impl Response {
         before: &PointState,
         by: &MaterialSlope,
     ) -> ResponseSlope {
-        let trial = self
-            .trial
-            .slope(&self.trial_tensor_slope(deformation, before));
+        let at = &self.response;
+        let b = self.trial_tensor_slope(deformation, before);
+        let trial = at.trial.slope(&b, &self.squared);
         let mean = (trial.strain[0] + trial.strain[1] + trial.strain[2]) / 3.0;
         let deviator = trial.strain.map(|e| e - mean);
-        let [bulk, shear] = self.moduli;
-        let along: f64 = self.deviator.iter().zip(deviator).map(|(e, d)| e * d).sum();
-        let trial_stress = if self.norm_squared > 0.0 {
-            self.trial_stress() * (by.shear / shear + along / self.norm_squared)
+        let [bulk, shear] = at.moduli;
+        let along: f64 = at.deviator.iter().zip(deviator).map(|(e, d)| e * d).sum();
+        let trial_stress = if at.norm_squared > 0.0 {
+            self.trial_stress * (by.shear / shear + along / at.norm_squared)
         } else {
             0.0
         };
-        let (p, theta) = if self.yields() {
-            self.return_slope(trial_stress, before, by)
-        } else {
-            (before.equivalent_plastic_strain, 0.0)
+        let (p, theta) = match self.yielded {
+            Some(_) => self.return_slope(trial_stress, before, by),
+            None => (before.equivalent_plastic_strain, 0.0),
         };
-        let pressure = 3.0 * (by.bulk * self.mean + bulk * mean);
-        let scale = by.shear * self.theta + shear * theta;
+        let pressure = 3.0 * (by.bulk * at.mean + bulk * mean);
+        let scale = by.shear * at.theta + shear * theta;
         let stress = std::array::from_fn(|a| {
-            pressure + 2.0 * (scale * self.deviator[a] + shear * self.theta * deviator[a])
+            pressure + 2.0 * (scale * at.deviator[a] + shear * at.theta * deviator[a])
         });
         // τ₁ - τ₂ = 2G θ (ε₁ - ε₂).
-        let twist = 2.0 * shear * self.theta * self.trial.spin_factor * trial.shear;
+        let twist = 2.0 * shear * at.theta * at.trial.spin_factor * trial.shear;
         let elastic_strain =
-            std::array::from_fn(|a| mean + theta * self.deviator[a] + self.theta * deviator[a]);
+            std::array::from_fn(|a| mean + theta * at.deviator[a] + at.theta * deviator[a]);
+        let cp_inverse = self.yielded.as_ref().map_or(before.cp_inverse, |yielded| {
+            yielded.cp_inverse_slope(at, elastic_strain, trial.shear, deformation)
+        });
         ResponseSlope {
-            kirchhoff: self.trial.sheared_tensor(stress, twist),
+            kirchhoff: at.trial.sheared_tensor(stress, twist),
             state: PointState {
-                cp_inverse: if self.yields() {
-                    self.cp_inverse_slope(deformation, elastic_strain, &trial)
-                } else {
-                    before.cp_inverse
-                },
+                cp_inverse,
                 equivalent_plastic_strain: p,
             },
             trial_stress,
@@ -149,8 +207,8 @@ impl Response {
 
     /// Of b = F C_p⁻¹ Fᵀ.
     fn trial_tensor_slope(&self, deformation: &Matrix, before: &PointState) -> PlaneTensor {
-        let f = &self.deformation_gradient;
-        let moved = turned(deformation, &self.before.cp_inverse, f);
+        let moved = plane::with_transpose(&plane::product(deformation, &self.right));
+        let f = &self.response.deformation_gradient;
         let remembered = plane::congruence(f, &before.cp_inverse.in_plane());
         PlaneTensor {
             xx: moved.xx + remembered.xx,
@@ -167,60 +225,48 @@ impl Response {
         before: &PointState,
         by: &MaterialSlope,
     ) -> (f64, f64) {
-        let three_g = 3.0 * self.moduli[1];
+        let at = &self.response;
+        let three_g = 3.0 * at.moduli[1];
         // θ - θ̄ = H/(3G + H).
-        let share = self.theta - self.theta_bar;
-        let dp = self.equivalent_plastic_strain - self.before.equivalent_plastic_strain;
-        let flow_stress = by.flow_stress(self.equivalent_plastic_strain);
+        let share = at.theta - at.theta_bar;
+        let dp = at.equivalent_plastic_strain - at.before.equivalent_plastic_strain;
+        let flow_stress = by.flow_stress(at.equivalent_plastic_strain);
         let driving = trial_stress - 3.0 * by.shear * dp - flow_stress;
-        let p =
-            (1.0 - share) * driving / three_g + (1.0 - share) * before.equivalent_plastic_strain;
+        let p = (1.0 - share) * (driving / three_g + before.equivalent_plastic_strain);
         let yield_stress = flow_stress + three_g * share / (1.0 - share) * p;
         (
             p,
-            (yield_stress - self.theta * trial_stress) / self.trial_stress(),
+            (yield_stress - at.theta * trial_stress) / self.trial_stress,
         )
     }
+}
 
+impl Yielded {
     /// Of C_p⁻¹ = F⁻¹ b_e F⁻ᵀ, which is F⁻¹ (db_e - dF C_p⁻¹ Fᵀ - F C_p⁻¹ dFᵀ) F⁻ᵀ.
     fn cp_inverse_slope(
         &self,
-        deformation: &Matrix,
+        at: &Response,
         elastic_strain: [f64; 3],
-        trial: &PrincipalSlope,
+        shear: f64,
+        deformation: &Matrix,
     ) -> PlaneTensor {
-        let f = &self.deformation_gradient;
-        let squared = self
-            .deviator
-            .map(|e| (2.0 * (self.mean + self.theta * e)).exp());
-        let values = std::array::from_fn(|a| 2.0 * squared[a] * elastic_strain[a]);
-        let difference = self.trial.strain[0] - self.trial.strain[1];
-        // (exp 2ε_e1 - exp 2ε_e2)/(λ₁ - λ₂), where ε_e1 - ε_e2 = θ (ε₁ - ε₂), times λ₁ + λ₂.
-        let ratio = if difference > 0.0 {
-            (self.theta * difference).sinh() / difference.tanh()
-        } else {
-            self.theta
-        };
-        let twist = 2.0 * (squared[0] * squared[1]).sqrt() * ratio * trial.shear;
-        let b = self.trial.sheared_tensor(values, twist);
-        let state = pull_back(f, self.determinant, &self.trial.tensor(squared));
-        let moved = turned(deformation, &state, f);
+        let values = std::array::from_fn(|a| 2.0 * self.squared[a] * elastic_strain[a]);
+        let b = at.trial.sheared_tensor(values, self.twist * shear);
+        let moved = plane::with_transpose(&plane::product(deformation, &self.right));
         let convected = PlaneTensor {
             xx: b.xx - moved.xx,
             yy: b.yy - moved.yy,
             zz: b.zz,
             xy: b.xy - moved.xy,
         };
-        pull_back(f, self.determinant, &convected)
+        pull_back(&at.deformation_gradient, at.determinant, &convected)
     }
 }
 
-/// df c fᵀ + f c dfᵀ in the plane.
-fn turned(df: &Matrix, c: &PlaneTensor, f: &Matrix) -> plane::SymmetricMatrix {
+/// c fᵀ in the plane.
+fn times_transpose(c: &PlaneTensor, f: &Matrix) -> Matrix {
     let [first, second] = f.map(|row| c.in_plane().times(row));
-    // c fᵀ by rows.
-    let right = [[first[0], second[0]], [first[1], second[1]]];
-    plane::with_transpose(&plane::product(df, &right))
+    [[first[0], second[0]], [first[1], second[1]]]
 }
 
 #[cfg(test)]
@@ -277,7 +323,8 @@ mod tests {
                 cp_inverse: PlaneTensor { xx, yy, zz, xy },
                 equivalent_plastic_strain: 0.01,
             };
-            let slope = answer.slope(&deformation, &before, &by);
+            let linearised = answer.linearised();
+            let slope = linearised.slope(&deformation, &before, &by);
             let close = |slope: f64, difference: f64, scale: f64| {
                 assert!(
                     (slope - difference).abs() < 1e-6 * (difference.abs() + scale),
@@ -301,7 +348,8 @@ mod tests {
             );
             let excess = |at: &Beside, of: &Response| at.material.excess(of);
             close(
-                here.material.excess_slope(&answer, &slope, &before, &by),
+                here.material
+                    .excess_slope(&linearised, &slope, &before, &by),
                 difference(excess(&above, &more), excess(&below, &less)),
                 1.0,
             );
