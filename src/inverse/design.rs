@@ -16,7 +16,7 @@ use super::runs::{Ran, Runs};
 use super::search::width;
 use super::statistics::dot;
 use super::{InverseError, design_report, least_change};
-use crate::case::{Case, Sought};
+use crate::case::{Case, Inverse, Sought};
 use crate::ranks::{agree_in_words, from_first};
 use crate::run::{Ending, refuse_bad_options};
 use crate::text::{number, rounded};
@@ -27,6 +27,8 @@ const FIRST_CHANGE: f64 = 0.1;
 const PROGRESS: f64 = 0.5;
 /// Shares of the way between these two runs that are not left.
 const INNER: [f64; 2] = [0.1, 0.9];
+/// On the mesh of the case the angle need not be nearer than this many tolerances if a finer one follows.
+const NEAR_ENOUGH: f64 = 10.0;
 /// Two points closer than this (as a share of the bounds) are the same.
 const SAME: f64 = 1e-9;
 /// Digits of a value that is tried.
@@ -67,6 +69,10 @@ struct Search {
     upper: Vec<f64>,
     /// How much finer than that of the case the mesh is now.
     refinement: usize,
+    /// How much finer it is in the end.
+    finest: usize,
+    /// By how much the finer mesh moves the angle, by the linear model, degrees.
+    of_the_mesh: Option<f64>,
     trials: Vec<Trial>,
 }
 
@@ -83,8 +89,8 @@ pub(super) fn design(
 ) -> Result<Ending, InverseError> {
     refuse_bad_options(case, comm)?;
     let runs = Runs::new(&withdrawn(case)?, session, comm)?;
-    let mut search = Search::new(runs, wanted, case.inverse.tolerance);
-    let found = match search.look(case.inverse.refinement) {
+    let mut search = Search::new(runs, wanted, &case.inverse);
+    let found = match search.look() {
         Ok(found) => found,
         Err(InverseError::Interrupted) => {
             let made = search.runs.made();
@@ -111,6 +117,8 @@ pub(super) fn design(
             .collect(),
         start: search.start.clone(),
         best,
+        refinement: search.refinement,
+        of_the_mesh_deg: search.of_the_mesh,
         trials: search.trials.clone(),
     };
     let mine = match comm.rank() {
@@ -139,7 +147,7 @@ fn withdrawn(case: &Case) -> Result<Case, InverseError> {
 }
 
 impl Search {
-    fn new(runs: Runs, wanted: f64, tolerance: f64) -> Self {
+    fn new(runs: Runs, wanted: f64, options: &Inverse) -> Self {
         let start = runs.start();
         let share = |bound: fn(&Sought) -> f64| -> Vec<f64> {
             let parameters = runs.parameters().iter().zip(&start);
@@ -152,8 +160,10 @@ impl Search {
             upper: share(|sought| sought.upper),
             start,
             wanted,
-            tolerance,
+            tolerance: options.tolerance,
             refinement: 1,
+            finest: options.refinement,
+            of_the_mesh: None,
             trials: Vec::new(),
             runs,
         }
@@ -183,29 +193,42 @@ impl Search {
     }
 
     fn is_found(&self) -> bool {
+        let tolerance = match self.refinement < self.finest {
+            true => NEAR_ENOUGH * self.tolerance,
+            false => self.tolerance,
+        };
         self.best()
-            .is_some_and(|best| self.miss(best).abs() <= self.tolerance)
+            .is_some_and(|best| self.miss(best).abs() <= tolerance)
     }
 
-    fn look(&mut self, refinement: usize) -> Result<Found, InverseError> {
-        match self.steps(refinement) {
+    fn look(&mut self) -> Result<Found, InverseError> {
+        match self.steps() {
             Err(InverseError::RunsUsedUp) => Ok(Found::RunsUsedUp),
             ended => ended,
         }
     }
 
-    fn steps(&mut self, refinement: usize) -> Result<Found, InverseError> {
+    fn steps(&mut self) -> Result<Found, InverseError> {
         let (found, slopes) = self.on_first_mesh()?;
-        match self.best().cloned() {
-            Some(best) if found == Found::Within && refinement > 1 => {
-                self.refinement = refinement;
-                match self.run(&best.change)? {
-                    Some(there) => Ok(self.approach(there, slopes)?.0),
-                    None => Ok(Found::RunsUsedUp),
-                }
-            }
-            _ => Ok(found),
+        let Some(best) = self.best().cloned() else {
+            return Ok(found);
+        };
+        if found != Found::Within || self.finest == 1 {
+            return Ok(found);
         }
+        let (change, _) = self.next(&best, &slopes);
+        self.refinement = self.finest;
+        let Some(there) = self.run(&change)? else {
+            return Ok(Found::RunsUsedUp);
+        };
+        let step: Vec<f64> = there
+            .change
+            .iter()
+            .zip(&best.change)
+            .map(|(a, b)| a - b)
+            .collect();
+        self.of_the_mesh = Some(there.angle_deg - best.angle_deg - dot(&slopes, &step));
+        Ok(self.approach(there, slopes)?.0)
     }
 
     /// Also the slopes of the angle.

@@ -23,6 +23,10 @@ pub(super) struct Design {
     pub parameters: Vec<&'static str>,
     pub start: Vec<f64>,
     pub best: Trial,
+    /// How much finer than that of the case the mesh of the last runs is.
+    pub refinement: usize,
+    /// By how much it moves the angle.
+    pub of_the_mesh_deg: Option<f64>,
     pub trials: Vec<Trial>,
 }
 
@@ -70,7 +74,8 @@ impl Design {
             ),
             ("runs", format!("{} in {:.1} s", self.runs, self.seconds)),
         ];
-        if let Some((angle, finer)) = self.of_the_mesh() {
+        if let Some(angle) = self.of_the_mesh_deg {
+            let finer = self.refinement;
             facts.push((
                 "of the mesh",
                 format!("{angle:+.3} deg from that of the case to one {finer} times as fine"),
@@ -84,14 +89,6 @@ impl Design {
         }
         facts.push(("results", folder.path().display().to_string()));
         format!("\n{}\n{}", aligned(&rows), banner(status, headline, &facts))
-    }
-
-    /// By how much the first run on the finer mesh differs from the last one before, which has the same values.
-    fn of_the_mesh(&self) -> Option<(f64, usize)> {
-        let mut pairs = self.trials.windows(2);
-        let pair = pairs.find(|pair| pair[0].refinement != pair[1].refinement)?;
-        let same = pair[0].values == pair[1].values;
-        same.then(|| (pair[1].angle_deg - pair[0].angle_deg, pair[1].refinement))
     }
 
     fn heads(&self, sought: &[Sought]) -> Vec<String> {

@@ -200,6 +200,10 @@ mod tests {
                 },
             )
         });
+        let start = [[26.25, -1.1], [26.65, -0.77], [26.45, -0.931]];
+        let at_rest = die(25.0, 4.0, 60.0)
+            .distance(interpolate(edge_shape(0.3), &start))
+            .arc_length;
         let (back, friction) = slip.map_or((0.0, None), |(slip, friction)| (slip, Some(friction)));
         Beside {
             tool: die(25.0 + by, 4.0 + 0.5 * by, 60.0),
@@ -213,8 +217,7 @@ mod tests {
             multiplier: 3e-4 + 0.01 * by,
             before: FrictionState {
                 traction: 1e-5 + 2e-3 * by,
-                arc_length: die(25.0, 4.0, 60.0).distance([26.5, -0.9]).arc_length - back
-                    + 0.7 * by,
+                arc_length: at_rest - back + 0.7 * by,
                 nodes: nodes.map(|[x, y]| {
                     [
                         x - 0.7 * back + 0.01 * (x - 26.4) + 2.0 * by,
