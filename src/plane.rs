@@ -52,6 +52,14 @@ impl SymmetricMatrix {
 }
 
 impl PlaneTensor {
+    /// All zeros.
+    pub const ZERO: Self = Self {
+        xx: 0.0,
+        yy: 0.0,
+        zz: 0.0,
+        xy: 0.0,
+    };
+
     /// Ones on the diagonal.
     pub const IDENTITY: Self = Self {
         xx: 1.0,
@@ -99,6 +107,31 @@ pub fn dot(a: Vector, b: Vector) -> f64 {
 #[inline]
 pub fn determinant(m: &Matrix) -> f64 {
     m[0][0] * m[1][1] - m[0][1] * m[1][0]
+}
+
+/// Product of two matrices.
+#[inline]
+pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    a.map(|row| [0, 1].map(|k| row[0] * b[0][k] + row[1] * b[1][k]))
+}
+
+/// The inverse of a matrix with this determinant.
+#[inline]
+pub fn inverse(m: &Matrix, determinant: f64) -> Matrix {
+    [
+        [m[1][1] / determinant, -m[0][1] / determinant],
+        [-m[1][0] / determinant, m[0][0] / determinant],
+    ]
+}
+
+/// m + mᵀ.
+#[inline]
+pub fn with_transpose(m: &Matrix) -> SymmetricMatrix {
+    SymmetricMatrix {
+        xx: 2.0 * m[0][0],
+        yy: 2.0 * m[1][1],
+        xy: m[0][1] + m[1][0],
+    }
 }
 
 /// Σ weight · vector over the three nodes of an edge.

@@ -157,7 +157,7 @@ fn a_start_that_cannot_be_run_and_runs_that_are_used_up_are_said() {
     assert!(ended.says("the runs that -most_runs allows are used up"));
 }
 
-const DESIGN: &str = "-design 100 -stroke 17 -time_load 537 -design_refinement 1";
+const DESIGN: &str = "-design 100 -stroke 17 -time_load 537";
 
 #[test]
 fn a_stroke_is_found_that_releases_at_the_wanted_angle() {
@@ -171,7 +171,9 @@ fn a_stroke_is_found_that_releases_at_the_wanted_angle() {
     let found = json(&folder.join("design.json"));
     let angle = found["best"]["angle_deg"].as_f64().unwrap();
     assert!((angle - 100.0).abs() <= 0.05, "{angle}");
-    // The run that stands for it says the same.
+    // It holds on the finer mesh, and the run that stands for it says the same.
+    assert_eq!(found["best"]["refinement"], 2);
+    assert_eq!(found["trials"][0]["refinement"], 1);
     let best = Path::new(found["best"]["folder"].as_str().unwrap()).join("summary.json");
     let angles = &json(&best)["angles_deg"];
     assert_eq!(angles["tools vanish at 0 mm"].as_f64().unwrap(), angle);
@@ -180,7 +182,11 @@ fn a_stroke_is_found_that_releases_at_the_wanted_angle() {
 #[test]
 fn an_angle_out_of_reach_gets_the_nearest_one() {
     let folder = scratch("design-reach");
-    let ended = program(1, &folder, &format!("{DESIGN} -parameters stroke:16:17.5"));
+    let ended = program(
+        1,
+        &folder,
+        &format!("{DESIGN} -design_refinement 1 -parameters stroke:16:17.5"),
+    );
     assert_eq!(ended.code, Some(1), "{}", ended.text());
     let found = json(&folder.join("design.json"));
     assert_eq!(found["found"], "out_of_reach");

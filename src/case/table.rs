@@ -351,8 +351,8 @@ option_table! {
     }
     DESIGN_REFINEMENT: Integer {
         name: "design_refinement", unit: "", default: "2", group: Group::Inverse, kind: Integer(1, 8),
-        meaning: "A found design is run once more with this number of elements in the place of each, in both directions; 1 \
-                  leaves this out.",
+        meaning: "A found design is run again, and corrected, with this number of elements in the place of each, in both \
+                  directions; 1 leaves this out.",
         value: |case| case.inverse.refinement,
     }
 }

@@ -14,6 +14,10 @@
 //! inactive point has λ = 0, an active one φ + C λ = 0, where C is the compliance of the surface. λ has no bound: its
 //! negative trial value is what releases a point.
 
+mod slope;
+
+pub use slope::{ContactAt, ContactLawSlope, ContactMotion, ContactSlope};
+
 use super::closest::{Drift, closest};
 use super::{ContactState, Friction, FrictionState, Traction};
 use crate::element::edge_shape;

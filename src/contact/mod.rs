@@ -10,6 +10,9 @@ mod state;
 
 pub use closest::Drift;
 pub use friction::{Friction, FrictionState, Traction};
-pub use law::{ContactLaw, ContactRows, ContactTangent, PointPosition};
+pub use law::{
+    ContactAt, ContactLaw, ContactLawSlope, ContactMotion, ContactRows, ContactSlope,
+    ContactTangent, PointPosition,
+};
 pub use rule::{ContactLocation, ContactRule, ContactSample};
 pub use state::ContactState;

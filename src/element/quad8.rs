@@ -1,5 +1,9 @@
 //! The eight-node element in plane strain, total displacements, per millimetre of width.
 
+mod slope;
+
+pub use slope::{EvaluatedPoint, PointMotion, Quad8Slope};
+
 use super::{Quadrature, gauss_points, shape, shape_gradients};
 use crate::material::{DeformationError, PointState, Response, VonMises};
 use crate::plane::{Matrix, PlaneTensor, Vector, determinant};

@@ -1,4 +1,5 @@
-//! A tool that gives the released sheet a wanted angle, with the least change from the start.
+//! A tool that gives the released sheet a wanted angle, with the least change from the start; on the mesh of the case first, then
+//! on a finer one.
 //!
 //! Minimised is the sum of the squares of the changes, each as a share of the width of its bounds; the angle is linear in
 //! them to first order, with slopes that every run makes better (Broyden 1965, Math. Comp. 19, 577-593; with one parameter
@@ -15,7 +16,7 @@ use super::runs::{Ran, Runs};
 use super::search::width;
 use super::statistics::dot;
 use super::{InverseError, design_report, least_change};
-use crate::case::{Case, Sought};
+use crate::case::{Case, Inverse, Sought};
 use crate::ranks::{agree_in_words, from_first};
 use crate::run::{Ending, refuse_bad_options};
 use crate::text::{number, rounded};
@@ -26,6 +27,8 @@ const FIRST_CHANGE: f64 = 0.1;
 const PROGRESS: f64 = 0.5;
 /// Shares of the way between these two runs that are not left.
 const INNER: [f64; 2] = [0.1, 0.9];
+/// On the mesh of the case the angle need not be nearer than this many tolerances if a finer one follows.
+const NEAR_ENOUGH: f64 = 10.0;
 /// Two points closer than this (as a share of the bounds) are the same.
 const SAME: f64 = 1e-9;
 /// Digits of a value that is tried.
@@ -40,6 +43,8 @@ pub(super) struct Trial {
     /// Derivatives of the angle by them, degrees, where the run has them.
     #[serde(skip)]
     slopes: Vec<Option<f64>>,
+    /// How much finer than that of the case the mesh is.
+    pub refinement: usize,
     pub values: Vec<f64>,
     pub angle_deg: f64,
     pub folder: String,
@@ -62,6 +67,12 @@ struct Search {
     start: Vec<f64>,
     lower: Vec<f64>,
     upper: Vec<f64>,
+    /// How much finer than that of the case the mesh is now.
+    refinement: usize,
+    /// How much finer it is in the end.
+    finest: usize,
+    /// By how much the finer mesh moves the angle, by the linear model, degrees.
+    of_the_mesh: Option<f64>,
     trials: Vec<Trial>,
 }
 
@@ -78,7 +89,7 @@ pub(super) fn design(
 ) -> Result<Ending, InverseError> {
     refuse_bad_options(case, comm)?;
     let runs = Runs::new(&withdrawn(case)?, session, comm)?;
-    let mut search = Search::new(runs, wanted, case.inverse.tolerance);
+    let mut search = Search::new(runs, wanted, &case.inverse);
     let found = match search.look() {
         Ok(found) => found,
         Err(InverseError::Interrupted) => {
@@ -91,14 +102,6 @@ pub(super) fn design(
     let Some(best) = search.best().cloned() else {
         let folder = search.runs.folder().file("run-001").display().to_string();
         return Err(InverseError::NoStart { folder });
-    };
-    let refinement = case.inverse.refinement;
-    let confirmation = match found {
-        Found::Within if refinement > 1 => {
-            let ran = search.runs.confirm(&best.values, refinement)?;
-            ran.and_then(|ran| search.angle(&ran))
-        }
-        _ => None,
     };
     let design = design_report::Design {
         wanted_deg: wanted,
@@ -114,8 +117,8 @@ pub(super) fn design(
             .collect(),
         start: search.start.clone(),
         best,
-        refinement,
-        confirmation_deg: confirmation,
+        refinement: search.refinement,
+        of_the_mesh_deg: search.of_the_mesh,
         trials: search.trials.clone(),
     };
     let mine = match comm.rank() {
@@ -144,7 +147,7 @@ fn withdrawn(case: &Case) -> Result<Case, InverseError> {
 }
 
 impl Search {
-    fn new(runs: Runs, wanted: f64, tolerance: f64) -> Self {
+    fn new(runs: Runs, wanted: f64, options: &Inverse) -> Self {
         let start = runs.start();
         let share = |bound: fn(&Sought) -> f64| -> Vec<f64> {
             let parameters = runs.parameters().iter().zip(&start);
@@ -157,7 +160,10 @@ impl Search {
             upper: share(|sought| sought.upper),
             start,
             wanted,
-            tolerance,
+            tolerance: options.tolerance,
+            refinement: 1,
+            finest: options.refinement,
+            of_the_mesh: None,
             trials: Vec::new(),
             runs,
         }
@@ -168,15 +174,31 @@ impl Search {
         trial.angle_deg - self.wanted
     }
 
-    /// The run that came nearest.
+    /// The runs on the present mesh.
+    fn here(&self) -> impl Iterator<Item = &Trial> {
+        let finer = self.refinement;
+        self.trials
+            .iter()
+            .filter(move |trial| trial.refinement == finer)
+    }
+
+    /// The run on the finest mesh there is that came nearest.
     fn best(&self) -> Option<&Trial> {
-        let by_miss = |a: &&Trial, b: &&Trial| self.miss(a).abs().total_cmp(&self.miss(b).abs());
-        self.trials.iter().min_by(by_miss)
+        let finest = self.trials.last()?.refinement;
+        let on_finest = self
+            .trials
+            .iter()
+            .filter(|trial| trial.refinement == finest);
+        on_finest.min_by(|a, b| self.miss(a).abs().total_cmp(&self.miss(b).abs()))
     }
 
     fn is_found(&self) -> bool {
+        let tolerance = match self.refinement < self.finest {
+            true => NEAR_ENOUGH * self.tolerance,
+            false => self.tolerance,
+        };
         self.best()
-            .is_some_and(|best| self.miss(best).abs() <= self.tolerance)
+            .is_some_and(|best| self.miss(best).abs() <= tolerance)
     }
 
     fn look(&mut self) -> Result<Found, InverseError> {
@@ -187,14 +209,38 @@ impl Search {
     }
 
     fn steps(&mut self) -> Result<Found, InverseError> {
-        let n = self.start.len();
-        let Some(mut here) = self.run(&vec![0.0; n])? else {
+        let (found, slopes) = self.on_first_mesh()?;
+        let Some(best) = self.best().cloned() else {
+            return Ok(found);
+        };
+        if found != Found::Within || self.finest == 1 {
+            return Ok(found);
+        }
+        let (change, _) = self.next(&best, &slopes);
+        self.refinement = self.finest;
+        let Some(there) = self.run(&change)? else {
             return Ok(Found::RunsUsedUp);
         };
+        let step: Vec<f64> = there
+            .change
+            .iter()
+            .zip(&best.change)
+            .map(|(a, b)| a - b)
+            .collect();
+        self.of_the_mesh = Some(there.angle_deg - best.angle_deg - dot(&slopes, &step));
+        Ok(self.approach(there, slopes)?.0)
+    }
+
+    /// Also the slopes of the angle.
+    fn on_first_mesh(&mut self) -> Result<(Found, Vec<f64>), InverseError> {
+        let n = self.start.len();
         let mut slopes = vec![0.0; n];
+        let Some(here) = self.run(&vec![0.0; n])? else {
+            return Ok((Found::RunsUsedUp, slopes));
+        };
         for k in 0..n {
             if self.is_found() {
-                return Ok(Found::Within);
+                break;
             }
             if let Some(slope) = here.slopes[k] {
                 slopes[k] = slope;
@@ -210,15 +256,24 @@ impl Search {
             slopes[k] = (there.angle_deg - here.angle_deg) / there.change[k];
         }
         // The model goes through the start; with one parameter the last run is as good.
+        self.approach(here, slopes)
+    }
+
+    /// From a run on the present mesh to the angle. Also the slopes in the end.
+    fn approach(
+        &mut self,
+        mut here: Trial,
+        mut slopes: Vec<f64>,
+    ) -> Result<(Found, Vec<f64>), InverseError> {
         while !self.is_found() {
             let (change, reachable) = self.next(&here, &slopes);
             let known = |trial: &Trial| distance(&trial.change, &change) < SAME;
-            if self.trials.iter().any(known) {
-                return Ok(if reachable {
-                    Found::RunsUsedUp
-                } else {
-                    Found::OutOfReach
-                });
+            if self.here().any(known) {
+                let found = match reachable {
+                    true => Found::RunsUsedUp,
+                    false => Found::OutOfReach,
+                };
+                return Ok((found, slopes));
             }
             let there = self.run_nearer(change, &here)?;
             let step: Vec<f64> = there
@@ -236,7 +291,7 @@ impl Search {
             }
             here = there;
         }
-        Ok(Found::Within)
+        Ok((Found::Within, slopes))
     }
 
     /// Where to go by the linear model at `here`, and whether it reaches the angle within the bounds; between the two
@@ -245,10 +300,7 @@ impl Search {
         let wanted = dot(slopes, &here.change) - self.miss(here);
         let (change, reachable) = least_change(slopes, wanted, &self.lower, &self.upper);
         let nearest = |side: f64| {
-            let on_side = self
-                .trials
-                .iter()
-                .filter(|trial| self.miss(trial) * side > 0.0);
+            let on_side = self.here().filter(|trial| self.miss(trial) * side > 0.0);
             on_side.min_by(|a, b| self.miss(a).abs().total_cmp(&self.miss(b).abs()))
         };
         let (Some(below), Some(above)) = (nearest(-1.0), nearest(1.0)) else {
@@ -256,7 +308,7 @@ impl Search {
         };
         let leaves =
             |k: usize| (change[k] - below.change[k]) * (change[k] - above.change[k]) >= 0.0;
-        let stalls = match &self.trials[..] {
+        let stalls = match &self.here().collect::<Vec<_>>()[..] {
             [.., before, last] => self.miss(last).abs() > PROGRESS * self.miss(before).abs(),
             _ => false,
         };
@@ -288,7 +340,7 @@ impl Search {
             rounded(start + part * width(sought), DIGITS).clamp(sought.lower, sought.upper)
         };
         let values: Vec<f64> = parameters.map(value).collect();
-        let ran = self.runs.next(&values, true)?;
+        let ran = self.runs.next(&values, self.refinement, true)?;
         let Some((ran, angle_deg)) = ran.and_then(|ran| self.angle(&ran).map(|angle| (ran, angle)))
         else {
             self.runs.show("  not solved to its end\n");
@@ -298,6 +350,7 @@ impl Search {
             .show(&format!("  angle {} deg\n", number(angle_deg)));
         let trial = Trial {
             slopes: self.slopes(&ran),
+            refinement: self.refinement,
             change: change.to_vec(),
             values,
             angle_deg,

@@ -23,10 +23,10 @@ pub(super) struct Design {
     pub parameters: Vec<&'static str>,
     pub start: Vec<f64>,
     pub best: Trial,
-    /// How much finer the mesh of the confirming run is.
+    /// How much finer than that of the case the mesh of the last runs is.
     pub refinement: usize,
-    /// The angle there, if it was run and solved.
-    pub confirmation_deg: Option<f64>,
+    /// By how much it moves the angle.
+    pub of_the_mesh_deg: Option<f64>,
     pub trials: Vec<Trial>,
 }
 
@@ -74,8 +74,12 @@ impl Design {
             ),
             ("runs", format!("{} in {:.1} s", self.runs, self.seconds)),
         ];
-        if self.found == Found::Within && self.refinement > 1 {
-            facts.push(("finer mesh", self.confirmation()));
+        if let Some(angle) = self.of_the_mesh_deg {
+            let finer = self.refinement;
+            facts.push((
+                "of the mesh",
+                format!("{angle:+.3} deg from that of the case to one {finer} times as fine"),
+            ));
         }
         if self.found == Found::RunsUsedUp {
             facts.push((
@@ -87,20 +91,9 @@ impl Design {
         format!("\n{}\n{}", aligned(&rows), banner(status, headline, &facts))
     }
 
-    fn confirmation(&self) -> String {
-        let mesh = format!("{0} x {0} elements in the place of each", self.refinement);
-        match self.confirmation_deg {
-            Some(angle) => format!(
-                "{angle:.3} deg, {:+.3} from the wanted angle ({mesh})",
-                angle - self.wanted_deg
-            ),
-            None => format!("not solved to its end ({mesh})"),
-        }
-    }
-
     fn heads(&self, sought: &[Sought]) -> Vec<String> {
         let with_unit = |s: &Sought| format!("{} {}", s.name, s.unit).trim_end().to_owned();
-        let mut heads = vec!["run".to_owned()];
+        let mut heads = vec!["run".to_owned(), "mesh".to_owned()];
         heads.extend(sought.iter().map(with_unit));
         heads.extend(["angle deg", "miss deg"].map(str::to_owned));
         heads
@@ -114,6 +107,7 @@ impl Design {
                 .next()
                 .unwrap_or_default()
                 .to_owned(),
+            format!("x {}", trial.refinement),
         ];
         row.extend(trial.values.iter().map(|value| number(*value)));
         row.push(format!("{:.3}", trial.angle_deg));

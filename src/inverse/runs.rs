@@ -122,12 +122,17 @@ impl Runs {
         self.parameters.iter().map(value).collect()
     }
 
-    /// The next run, with these values of the parameters, and with its derivatives by those that have them if they are
-    /// `wanted`. `None` if there is no such case or it is not solved to its end. Collective.
+    /// The next run, with these values of the parameters on a mesh `refinement` times as fine as that of the case, and with its
+    /// derivatives by those that have them if they are `wanted`. `None` if there is no such case or it is not solved to its end. Collective.
     ///
     /// # Errors
     /// If the runs are used up, the run was asked to end, or a file cannot be written; the same on every rank.
-    pub fn next(&mut self, values: &[f64], wanted: bool) -> Result<Option<Ran>, InverseError> {
+    pub fn next(
+        &mut self,
+        values: &[f64],
+        refinement: usize,
+        wanted: bool,
+    ) -> Result<Option<Ran>, InverseError> {
         if self.made == self.most {
             return Err(InverseError::RunsUsedUp);
         }
@@ -142,6 +147,8 @@ impl Runs {
         let folder = format!("run-{:03}", self.made);
         match self.case.with(&self.named(values)) {
             Ok(mut case) => {
+                case.discretisation.nx *= refinement;
+                case.discretisation.ny *= refinement;
                 if wanted {
                     case.output.sensitivity = self.differentiable(&case);
                 }
@@ -169,21 +176,6 @@ impl Runs {
                 alone.parameters().is_ok()
             })
             .collect()
-    }
-
-    /// A run with these values on a mesh that is `refinement` times as fine; it is none of the search. Collective.
-    ///
-    /// # Errors
-    /// As [`Runs::next`].
-    pub fn confirm(
-        &mut self,
-        values: &[f64],
-        refinement: usize,
-    ) -> Result<Option<Ran>, InverseError> {
-        let mut case = self.case.with(&self.named(values))?;
-        case.discretisation.nx *= refinement;
-        case.discretisation.ny *= refinement;
-        self.run(case, "confirmation")
     }
 
     fn run(&mut self, mut case: Case, folder: &str) -> Result<Option<Ran>, InverseError> {

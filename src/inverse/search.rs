@@ -145,7 +145,7 @@ impl Search {
 
     fn run(&mut self, at: &[f64]) -> Result<Option<Fit>, InverseError> {
         let values = self.values(at);
-        let Some(ran) = self.runs.next(&values, true)? else {
+        let Some(ran) = self.runs.next(&values, 1, true)? else {
             return Ok(None);
         };
         let forces = self.forces(&ran);
@@ -201,7 +201,7 @@ impl Search {
         };
         beside[parameter] += step;
         self.runs.show("  difference\n");
-        let Some(ran) = self.runs.next(&self.values(&beside), false)? else {
+        let Some(ran) = self.runs.next(&self.values(&beside), 1, false)? else {
             return Ok(None);
         };
         let others = self.forces(&ran);

@@ -7,4 +7,6 @@ mod principal;
 mod von_mises;
 
 pub use hardening::Hardening;
-pub use von_mises::{DeformationError, PointState, Response, VonMises};
+pub use von_mises::{
+    DeformationError, Linearised, MaterialSlope, PointState, Response, ResponseSlope, VonMises,
+};

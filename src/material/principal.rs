@@ -17,7 +17,45 @@ pub(super) struct PrincipalStrains {
     pub spin_factor: f64,
 }
 
+/// How logarithmic strains and their axes move with the tensor.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PrincipalSlope {
+    pub strain: [f64; 3],
+    /// Component off the diagonal in the principal axes, as a share of the sum of the squared stretches in the plane.
+    pub shear: f64,
+}
+
 impl PrincipalStrains {
+    /// The squared stretches.
+    pub fn squared(&self) -> [f64; 3] {
+        self.strain.map(|e| (2.0 * e).exp())
+    }
+
+    /// Derivatives from that of the tensor, with the [`PrincipalStrains::squared`] stretches.
+    pub fn slope(&self, tensor: &PlaneTensor, squared: &[f64; 3]) -> PrincipalSlope {
+        let [cos, sin] = self.axis;
+        let centre = 0.5 * (tensor.xx + tensor.yy);
+        let difference = 0.5 * (tensor.xx - tensor.yy);
+        let half = difference * cos + tensor.xy * sin;
+        let values = [centre + half, centre - half, tensor.zz];
+        PrincipalSlope {
+            strain: std::array::from_fn(|a| 0.5 * values[a] / squared[a]),
+            shear: (tensor.xy * cos - difference * sin) / (squared[0] + squared[1]),
+        }
+    }
+
+    /// The tensor with these principal values and this component off the diagonal in the same axes.
+    pub fn sheared_tensor(&self, values: [f64; 3], shear: f64) -> PlaneTensor {
+        let [cos, sin] = self.axis;
+        let diagonal = self.tensor(values);
+        PlaneTensor {
+            xx: diagonal.xx - shear * sin,
+            yy: diagonal.yy + shear * sin,
+            zz: diagonal.zz,
+            xy: diagonal.xy + shear * cos,
+        }
+    }
+
     /// Of the tensor `b` in the plane and `b_zz` normal to it. Where `b` is not positive definite to rounding, strains
     /// are infinite or not a number.
     #[inline]

@@ -5,6 +5,10 @@
 //! 14.3 and 14.4; the comments number the steps of the first; the radial return and its consistent tangent: Simo and Hughes
 //! 1998, box 3.2).
 
+mod slope;
+
+pub use slope::{Linearised, MaterialSlope, ResponseSlope};
+
 use super::Hardening;
 use super::principal::PrincipalStrains;
 use crate::plane::{self, Matrix, PlaneTensor};
@@ -233,10 +237,7 @@ impl Response {
 
 /// F⁻¹ b F⁻ᵀ with the component normal to the plane kept.
 fn pull_back(f: &Matrix, determinant: f64, b: &PlaneTensor) -> PlaneTensor {
-    let inverse = [
-        [f[1][1] / determinant, -f[0][1] / determinant],
-        [-f[1][0] / determinant, f[0][0] / determinant],
-    ];
+    let inverse = plane::inverse(f, determinant);
     let pulled = plane::congruence(&inverse, &b.in_plane());
     PlaneTensor {
         xx: pulled.xx,

@@ -49,18 +49,16 @@ pub struct Cost {
     pub parameter_seconds: f64,
 }
 
-/// The share of its value by which a parameter differs on each side: rounding divided by it is small against a
-/// derivative that moves the sheet by millimetres, and few points yield on one side only.
-const SHARE: f64 = 1e-6;
-/// Of parameters that move the sheet by micrometres, and in which the equations of contact are linear.
-const LINEAR: [(&str, f64); 2] = [("contact_compliance", 1e-4), ("friction_coefficient", 1e-4)];
+/// The share of its value by which a parameter differs on each side. Only the numbers of the problem are differenced, most
+/// of which are linear in it.
+const SHARE: f64 = 1e-5;
 
 /// A parameter and the problems beside the one of the case.
 pub struct Beside {
     /// The parameter.
     pub parameter: Parameter,
-    /// Half the distance between them, in its unit.
-    pub half_width: f64,
+    /// How far they are apart, in its unit.
+    pub width: f64,
     /// With a little more and a little less of it.
     pub problems: [Problem; 2],
 }
@@ -72,14 +70,12 @@ impl Beside {
     /// [`CaseError::NoDerivative`].
     pub fn of(case: &Case) -> Result<Vec<Self>, CaseError> {
         let beside = |parameter: Parameter| {
-            let linear = LINEAR.iter().find(|(name, _)| *name == parameter.name);
-            let share = linear.map_or(SHARE, |(_, share)| *share);
             Ok(Self {
                 problems: [
-                    Problem::new(&case.beside(&parameter, share)?),
-                    Problem::new(&case.beside(&parameter, -share)?),
+                    Problem::new(&case.beside(&parameter, SHARE)?),
+                    Problem::new(&case.beside(&parameter, -SHARE)?),
                 ],
-                half_width: share * parameter.value,
+                width: 2.0 * SHARE * parameter.value,
                 parameter,
             })
         };

@@ -2,12 +2,10 @@
 
 use petsc::VectorRef;
 
-use super::solve::on_reduced_set;
+use super::solve::Tangent;
 use super::step::Sensitivity;
 use crate::ranks;
-use crate::system::{
-    CondensedSolve, Directions, EvaluationError, History, LocalStep, System, SystemError, Workspace,
-};
+use crate::system::{CondensedSolve, EvaluationError, History, System, SystemError};
 
 /// Derivatives of a released angle.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -69,39 +67,25 @@ impl Sensitivity {
         if ranks::lowest_failing(comm, failed).is_some() || !state.solve.factor(&entries, &[])? {
             return Ok(());
         }
-        let step = LocalStep {
-            before: state.history,
-            after: state.history,
-            flowing: &state.history.flowing(state.history),
-            t: end,
-            u: &u,
-            a: &still,
+        let step = system.local().evaluated(state.history, end, &u, &still);
+        let failing = ranks::lowest_failing(comm, step.is_err()).is_some();
+        let Some(step) = step.ok().filter(|_| !failing) else {
+            return Ok(());
         };
-        let mut work = Workspace::new(system.local());
+        let tangent = Tangent {
+            system,
+            entries: &entries,
+            solve: state.solve,
+            closed: &[],
+            scheme: None,
+        };
         for (tracked, angle) in self.tracked.iter().zip(angles) {
-            let variation = tracked.variation.released(system);
-            // Contact unknowns come last.
-            let mut guess = self.system.local_values(&tracked.unknowns)?;
-            guess.truncate(u.len());
-            let along = Directions {
-                history: &tracked.history.without_contact(),
-                u: &guess,
-                a: &still,
-            };
-            let mut shares = still.clone();
-            let evaluated = variation.residual_slope(&step, &along, &mut work, &mut shares);
-            if ranks::lowest_failing(comm, evaluated.is_err()).is_some() {
-                continue;
-            }
-            let mut right_side = system.vector()?;
-            system.sum_of_shares(&shares, &mut right_side)?;
-            right_side.scale(-1.0)?;
-            let correction = on_reduced_set(system, state.solve, &[], &right_side)?;
-            let mut du = system.local_values(&correction)?;
-            du.iter_mut()
-                .zip(&guess)
-                .for_each(|(du, guess)| *du += guess);
-            [_, *angle] = variation.shape_slopes(&u, &du).over_ranks(comm);
+            // The nodes are those of the sheet with its tools, and so is their variation.
+            let history = tracked.history.without_contact();
+            let (unknowns, solves) = tracked.solve(&step, &tangent, system.vector()?, &history)?;
+            self.cost.solves += solves;
+            let du = system.local_values(&unknowns)?;
+            [_, *angle] = tracked.variation.shape_slopes(&step, &du).over_ranks(comm);
         }
         Ok(())
     }

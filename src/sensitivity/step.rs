@@ -3,19 +3,17 @@
 use std::rc::Rc;
 
 use cpu_time::ProcessTime;
-use mpi::traits::Communicator;
 use petsc::{AlphaParameters, CallbackError, VectorRef};
 
 use super::released::ReleasedSlopes;
-use super::solve::on_reduced_set;
+use super::solve::Tangent;
 use super::tracked::{Scheme, Tracked};
 use super::{Beside, Cost, Slopes};
 use crate::case::Parameter;
 use crate::contact::ContactState;
 use crate::ranks;
 use crate::system::{
-    CondensedSolve, Directions, ElementFailure, EvaluationError, History, JacobianEntries,
-    LocalStep, System, Workspace,
+    CondensedSolve, EvaluatedStep, EvaluationError, History, JacobianEntries, System,
 };
 
 /// The derivatives of a run by its parameters.
@@ -24,7 +22,6 @@ pub struct Sensitivity {
     solve: Rc<CondensedSolve>,
     entries: JacobianEntries,
     pub(super) tracked: Vec<Tracked>,
-    work: Workspace,
     /// What the points did in the last step: Gauss points that yielded, and contact points.
     pub(super) flowing: Vec<bool>,
     contact: Vec<ContactState>,
@@ -63,7 +60,7 @@ pub struct Inertia<'a> {
 pub struct StepSlopes {
     /// Points that did something else than in the step before.
     pub changed_points: u32,
-    /// The most Gauss points over the parameters that yield on one side of its value only.
+    /// The most Gauss points over the parameters that begin or cease to yield within a millionth of its value.
     pub doubtful_points: u32,
     /// In the order of the parameters; NaN where they cannot be had.
     pub by_parameter: Vec<Slopes>,
@@ -89,7 +86,6 @@ impl Sensitivity {
             solve,
             entries: system.jacobian_entries(),
             tracked: tracked.collect::<petsc::Result<_>>()?,
-            work: Workspace::new(system.local()),
             flowing: history.flowing(history),
             contact: history.contact_states_at(system.local(), &u),
             system: Rc::clone(system),
@@ -137,6 +133,10 @@ impl Sensitivity {
         let scheme = scheme.map(|inertia| Scheme::new(inertia.dt, inertia.parameters));
         let closed = system.closed_gaps(&u);
         self.lost = self.lost || !self.factor(step, scheme.as_ref(), &closed)?;
+        let evaluated = system.local().evaluated(step.before, step.t, &u, &a);
+        let failing = ranks::lowest_failing(system.comm(), evaluated.is_err());
+        let evaluated = evaluated.ok().filter(|_| failing.is_none() && !self.lost);
+        self.lost = evaluated.is_none();
         self.cost.shared_seconds += began.elapsed().as_secs_f64();
 
         let began = ProcessTime::now();
@@ -144,26 +144,22 @@ impl Sensitivity {
             changed_points: u32::try_from(changed)?,
             ..StepSlopes::default()
         };
-        let flowing = std::mem::take(&mut self.flowing);
-        let local = LocalStep {
-            before: step.before,
-            after: step.after,
-            flowing: &flowing,
-            t: step.t,
-            u: &u,
-            a: &a,
+        let tangent = Tangent {
+            system: &system,
+            entries: &self.entries,
+            solve: &self.solve,
+            closed: &closed,
+            scheme: scheme.as_ref(),
         };
-        for index in 0..self.tracked.len() {
-            let found = match self.lost {
-                true => None,
-                false => self.by_parameter(index, &local, scheme.as_ref(), &closed)?,
+        for tracked in &mut self.tracked {
+            let Some(evaluated) = &evaluated else {
+                slopes.by_parameter.push(NOT_KNOWN);
+                continue;
             };
-            self.lost |= found.is_none();
-            let (by, doubtful) = found.unwrap_or((NOT_KNOWN, 0));
+            let (by, doubtful) = tracked.follow(evaluated, &tangent, &mut self.cost)?;
             slopes.by_parameter.push(by);
             slopes.doubtful_points = slopes.doubtful_points.max(doubtful);
         }
-        self.flowing = flowing;
         self.cost.parameter_seconds += began.elapsed().as_secs_f64();
         Ok(slopes)
     }
@@ -189,67 +185,31 @@ impl Sensitivity {
         self.cost.factorisations += 1;
         self.solve.factor(&self.entries, closed)
     }
+}
 
-    /// The derivatives by one parameter, and its number of doubtful points; none if an element cannot be evaluated beside
-    /// the solution. Collective.
-    fn by_parameter(
+impl Tracked {
+    /// Follows a step whose tangent is factorised. The derivatives, and the number of doubtful points. Collective.
+    fn follow(
         &mut self,
-        index: usize,
-        step: &LocalStep<'_>,
-        scheme: Option<&Scheme>,
-        closed: &[i32],
-    ) -> petsc::Result<Option<(Slopes, u32)>> {
-        let Self {
-            system,
-            tracked,
-            work,
-            ..
-        } = self;
-        let (comm, tracked) = (system.comm(), &mut tracked[index]);
-        let displacements = system.owned_displacements();
-        // Near the derivatives to come nearly all points yield or do not yield on both sides as they do in the solution,
-        // which at held unknowns they would not: the guess is those of the last step.
-        let mut guess = system.local_values(&tracked.unknowns)?;
-        system.local().limit_guess(step.u, &mut guess);
-        let mut acceleration = system.vector()?;
-        if let Some(scheme) = scheme {
-            tracked.guess_acceleration(scheme, displacements, &mut acceleration)?;
-        }
-        let along = Directions {
-            history: &tracked.history,
-            u: &guess,
-            a: &system.local_values(&acceleration)?,
-        };
-        let mut shares = vec![0.0; step.u.len()];
-        let evaluated = tracked
+        step: &EvaluatedStep<'_>,
+        tangent: &Tangent<'_>,
+        cost: &mut Cost,
+    ) -> petsc::Result<(Slopes, u32)> {
+        let system = tangent.system;
+        let guess = self.guess(tangent.scheme, system.owned_displacements())?;
+        let (unknowns, solves) = self.solve(step, tangent, guess, &self.history)?;
+        cost.solves += solves;
+        let du = system.local_values(&unknowns)?;
+        let advanced = self.variation.advance(step, &du, &mut self.history);
+        self.move_on(unknowns, tangent.scheme, system.owned_displacements())?;
+        let mine = [advanced.force, advanced.doubtful_points as f64];
+        let [force, doubtful] = ranks::sums(system.comm(), mine);
+        let [dy_a, angle] = self
             .variation
-            .residual_slope(step, &along, work, &mut shares);
-        if fails(comm, &evaluated) {
-            return Ok(None);
-        }
-        let mut right_side = system.vector()?;
-        system.sum_of_shares(&shares, &mut right_side)?;
-        right_side.scale(-1.0)?;
-        let correction = on_reduced_set(system, &self.solve, closed, &right_side)?;
-        self.cost.solves += 1;
-        let mut du = system.local_values(&correction)?;
-        du.iter_mut()
-            .zip(&guess)
-            .for_each(|(du, guess)| *du += guess);
-        let unknowns = system.own_values(&du)?;
-        let advanced = tracked
-            .variation
-            .advance(step, &du, work, &mut tracked.history);
-        if fails(comm, &advanced) {
-            return Ok(None);
-        }
-        tracked.move_on(unknowns, scheme, displacements)?;
-        let (force, doubtful) = advanced.unwrap_or_default();
-        let [force, doubtful] = ranks::sums(comm, [force, doubtful as f64]);
-        let shape = tracked.variation.shape_slopes(step.u, &du);
-        let [dy_a, angle] = shape.over_ranks(comm);
+            .shape_slopes(step, &du)
+            .over_ranks(system.comm());
         let force = system.problem().whole_sheet * force;
-        Ok(Some((Slopes { force, angle, dy_a }, doubtful as u32)))
+        Ok((Slopes { force, angle, dy_a }, doubtful as u32))
     }
 }
 
@@ -259,11 +219,6 @@ const NOT_KNOWN: Slopes = Slopes {
     angle: f64::NAN,
     dy_a: f64::NAN,
 };
-
-/// Whether it failed on any rank. Collective.
-fn fails<T>(comm: &impl Communicator, mine: &Result<T, ElementFailure>) -> bool {
-    ranks::lowest_failing(comm, mine.is_err()).is_some()
-}
 
 fn count_changes<T: PartialEq>(now: &[T], before: &[T]) -> u64 {
     now.iter().zip(before).filter(|(a, b)| a != b).count() as u64

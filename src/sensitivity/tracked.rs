@@ -31,9 +31,11 @@ impl Scheme {
         Self { dt, parameters }
     }
 
-    fn past(&self) -> f64 {
+    /// Of a displacement that changes by `change`, from this velocity and acceleration.
+    fn end_acceleration(&self, change: f64, velocity: f64, acceleration: f64) -> f64 {
         let beta = self.parameters.beta;
-        -(1.0 - 2.0 * beta) / (2.0 * beta)
+        let past = -(1.0 - 2.0 * beta) / (2.0 * beta);
+        past * acceleration + self.change() * (change - self.dt * velocity)
     }
 
     fn change(&self) -> f64 {
@@ -50,10 +52,10 @@ impl Tracked {
     /// At the start of a run: the sheet is at rest whatever the parameter is.
     pub fn start(system: &System, beside: Beside) -> petsc::Result<Self> {
         let parameter = beside.parameter;
-        let variation = system.variation(beside.problems, beside.half_width);
+        let variation = system.variation(beside.problems, beside.width, parameter.value);
         Ok(Self {
             parameter,
-            history: variation.virgin_slope(),
+            history: variation.virgin_slope(system.local()),
             variation,
             unknowns: system.vector()?,
             velocity: system.vector()?,
@@ -61,22 +63,36 @@ impl Tracked {
         })
     }
 
-    /// Derivative of the acceleration in the equations of a step that leaves those of the unknowns as they are, for the
-    /// `count` displacements this rank owns.
-    pub fn guess_acceleration(
+    /// Derivative of the acceleration in the equations of a step to held unknowns, for the `count` displacements this rank
+    /// owns.
+    pub fn held_acceleration(
         &self,
         scheme: &Scheme,
         count: usize,
         out: &mut Vector,
     ) -> petsc::Result<()> {
+        let u = self.unknowns.read()?;
         let (v, a) = (self.velocity.read()?, self.acceleration.read()?);
         let mut out = out.write()?;
         let alpha = scheme.parameters.alpha_m;
         for i in 0..count {
-            let end = scheme.past() * a[i] - scheme.change() * scheme.dt * v[i];
+            let end = scheme.end_acceleration(-u[i], v[i], a[i]);
             out[i] = a[i] + alpha * (end - a[i]);
         }
         Ok(())
+    }
+
+    /// A guess at the derivatives of the unknowns at the end of a step, for the `count` displacements this rank owns: on at
+    /// the velocity.
+    pub fn guess(&self, scheme: Option<&Scheme>, count: usize) -> petsc::Result<Vector> {
+        let mut guess = self.unknowns.to_owned()?;
+        if let Some(scheme) = scheme {
+            let (v, mut guess) = (self.velocity.read()?, guess.write()?);
+            for i in 0..count {
+                guess[i] += scheme.dt * v[i];
+            }
+        }
+        Ok(guess)
     }
 
     /// Takes the derivatives of the unknowns at the end of a step over.
@@ -94,7 +110,7 @@ impl Tracked {
         let (mut v, mut a) = (self.velocity.write()?, self.acceleration.write()?);
         let (dt, gamma) = (scheme.dt, scheme.parameters.gamma);
         for i in 0..count {
-            let end = scheme.past() * a[i] + scheme.change() * (u[i] - before[i] - dt * v[i]);
+            let end = scheme.end_acceleration(u[i] - before[i], v[i], a[i]);
             v[i] += dt * ((1.0 - gamma) * a[i] + gamma * end);
             a[i] = end;
         }

@@ -13,6 +13,7 @@ mod contact_profile;
 mod contact_samples;
 mod convergence;
 mod error;
+mod evaluated;
 mod history;
 mod history_slope;
 mod initial;
@@ -48,6 +49,7 @@ pub use contact_samples::ContactPointSample;
 pub use error::{
     ElementFailure, EvaluationError, FailedElement, MeshOrderError, SystemError, WrongSize,
 };
+pub use evaluated::EvaluatedStep;
 pub use history::History;
 pub use measures::Measures;
 pub use node_samples::NodeSample;
@@ -60,7 +62,7 @@ pub use snapshot::Snapshot;
 pub use subdomain::Subdomain;
 pub use subdomain_size::SubdomainSize;
 pub use tangent::JacobianEntries;
-pub use variation::{Directions, LocalStep, Variation, Workspace};
+pub use variation::{Advanced, Variation};
 pub use work::{AcceptedState, Work};
 
 use crate::contact::ContactState;

@@ -43,6 +43,8 @@ pub struct JacobianEntries {
     values: Vec<f64>,
     element_count: usize,
     contact_count: usize,
+    /// What a unit of [`crate::element::Quad8::mass`] adds to them, 1/mm.
+    inertia: f64,
 }
 
 impl JacobianEntries {
@@ -54,6 +56,7 @@ impl JacobianEntries {
             values: vec![0.0; count + of.supports.len()],
             element_count,
             contact_count,
+            inertia: 0.0,
         }
     }
 
@@ -74,6 +77,51 @@ impl JacobianEntries {
             .chunks_exact(CONTACT_ENTRIES)
     }
 
+    /// Adds the product with `u` to the rows of `out` (both local); rows of prescribed displacements take no part.
+    pub fn add_product(&self, of: &Subdomain, u: &[f64], out: &mut [f64]) {
+        use CONTACT_LAYOUT as AT;
+        let elements = self.of_elements().chunks_exact(ELEMENT_ENTRIES);
+        for (element, entries) in elements.enumerate() {
+            let (nodes, values) = (&of.connectivity[element], of.element_values(element, u));
+            // A translation strains nothing, but for the entries' rounding.
+            let [first, ..] = values;
+            let moved = values.map(|u| [0, 1].map(|k| u[k] - first[k]));
+            let mut sum = [0.0; 16];
+            // The entries are symmetric.
+            for (row, value) in entries.chunks_exact(16).zip(moved.as_flattened()) {
+                for (sum, entry) in sum.iter_mut().zip(row) {
+                    *sum += entry * value;
+                }
+            }
+            let masses = of.kernels[element].mass();
+            for (a, &n) in nodes.iter().enumerate() {
+                let mass = self.inertia * masses[a].iter().sum::<f64>();
+                for k in 0..2 {
+                    out[2 * n + k] += sum[2 * a + k] + mass * first[k];
+                }
+            }
+        }
+        for (point, entries) in self.of_contacts().enumerate() {
+            let nodes = of.contacts[point].nodes;
+            let at: [usize; 6] = std::array::from_fn(|i| 2 * nodes[i / 2] + i % 2);
+            let (values, m) = (at.map(|i| u[i]), of.multiplier(point));
+            let by_multiplier = &entries[AT.force_multiplier];
+            let rows = entries[AT.force_u].chunks_exact(6).zip(by_multiplier);
+            for (&i, (row, by_multiplier)) in at.iter().zip(rows) {
+                out[i] += product(row, &values) + by_multiplier * u[m];
+            }
+            out[m] += product(&entries[AT.closure_u], &values)
+                + entries[AT.closure_multiplier] * u[m]
+                + entries[AT.closure_gap] * u[m + 1];
+            out[m + 1] += product(&entries[AT.complementarity_u], &values)
+                + entries[AT.complementarity_multiplier] * u[m]
+                + entries[AT.complementarity_gap] * u[m + 1];
+        }
+        for support in &of.supports {
+            out[support.unknown] = 0.0;
+        }
+    }
+
     fn parts(&mut self) -> (&mut [f64], &mut [f64], &mut [f64]) {
         let (elements, rest) = self
             .values
@@ -81,6 +129,10 @@ impl JacobianEntries {
         let (contacts, supports) = rest.split_at_mut(CONTACT_ENTRIES * self.contact_count);
         (elements, contacts, supports)
     }
+}
+
+fn product(row: &[f64], values: &[f64]) -> f64 {
+    row.iter().zip(values).map(|(a, b)| a * b).sum()
 }
 
 impl Subdomain {
@@ -143,6 +195,7 @@ impl Subdomain {
     ) -> Result<(), ElementFailure> {
         let scale = 1.0 / self.problem.young_modulus;
         let inertia = scale * shift * self.problem.density;
+        entries.inertia = inertia;
         let (elements, contacts, supports) = entries.parts();
         let mut local = ElementForce::ZERO;
         for (element, out) in elements.chunks_exact_mut(ELEMENT_ENTRIES).enumerate() {

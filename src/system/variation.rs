@@ -1,78 +1,63 @@
-//! Derivatives of what a subdomain computes by a parameter of the problem, along with what moves with the parameter.
+//! How what a subdomain computes moves with a parameter of the problem, along with the unknowns and the history.
 //!
-//! Two problems beside the one that is solved, with the parameter a little above and below its value, are evaluated at
-//! the same unknowns from histories and accelerations moved along their own derivatives: the difference by the width is
-//! the derivative. All of it is explicit, so no tolerance of a solver enters; what is left is rounding divided by the
-//! share of the parameter by which the problems differ, and the square of that share.
+//! The kernels give exact derivatives. What they need to know of the parameter, how it moves the numbers of the problem
+//! (nodes, constants, tools), is the difference of the two problems beside it, the same on every rank.
 
 use mpi::traits::Communicator;
-use petsc::{Vector, VectorRef};
+use petsc::VectorRef;
 
 use super::System;
-use super::error::ElementFailure;
+use super::evaluated::EvaluatedStep;
 use super::history::History;
-use super::measures::upward;
 use super::problem::Problem;
 use super::shape_slope::ShapeSlopes;
-use super::subdomain::Subdomain;
-use crate::element::ElementForce;
+use super::subdomain::{LocalContact, Subdomain};
+use crate::contact::{ContactAt, ContactLawSlope, ContactMotion, ContactSlope, FrictionState};
+use crate::element::Quad8Slope;
+use crate::material::{MaterialSlope, PointState};
 use crate::mesh::SurfaceSide;
+use crate::plane::{PlaneTensor, dot, interpolate};
+use crate::tool::ProfileSlope;
 
 /// Multipliers up to this size are rounding (mm), and gaps up to this size are closed (mm; PETSc's limit).
 const NO_FORCE: f64 = 1e-13;
 const CLOSED: f64 = 1e-8;
+/// Gauss points whose trial stress differs from the flow stress by a larger share are not at a kink.
+const NEAR: f64 = 1e-3;
+/// The share of a parameter within which a Gauss point that begins or ceases to yield makes its derivative doubtful.
+const DOUBTFUL: f64 = 1e-6;
 
-/// The problems beside one of a system.
+/// How a parameter moves the numbers of one rank's part of the problem, per unit.
 pub struct Variation {
-    /// Above and below.
-    sides: [Subdomain; 2],
-    /// Half the distance between them, in the unit of the parameter.
-    half_width: f64,
+    /// Value of the parameter.
+    value: f64,
+    /// Of Young's modulus, as a share of it.
+    young: f64,
+    material: MaterialSlope,
+    /// Of the local nodes, mm, and of their elements; none if the mesh stays.
+    mesh: Option<(Vec<[f64; 2]>, Vec<Quad8Slope>)>,
+    lower_tool: Option<ProfileSlope>,
+    upper_tool: Option<ProfileSlope>,
+    /// Of the constants of the contact points.
+    contacts: Vec<ContactLawSlope>,
 }
 
-/// An accepted step as this rank sees it.
-pub struct LocalStep<'a> {
-    /// What it started from.
-    pub before: &'a History,
-    /// What it left.
-    pub after: &'a History,
-    /// Which Gauss points have yielded on it.
-    pub flowing: &'a [bool],
-    /// Time at its end, ms.
-    pub t: f64,
-    /// Unknowns at its end, mm.
-    pub u: &'a [f64],
-    /// Accelerations in its equations, mm/ms².
-    pub a: &'a [f64],
-}
-
-/// What moves with a parameter.
-pub struct Directions<'a> {
-    /// Derivative of the history a step starts from.
-    pub history: &'a History,
-    /// A guess at that of the unknowns at its end (local); gaps stay.
-    pub u: &'a [f64],
-    /// That of the accelerations in its equations which goes with the guess (local).
-    pub a: &'a [f64],
-}
-
-/// Room for both sides, the same for all parameters.
-pub struct Workspace {
-    histories: [History; 2],
-    u: Vec<f64>,
-    a: Vec<f64>,
-    residuals: [Vec<f64>; 2],
+/// What has moved at the end of a step, on this rank.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Advanced {
+    /// Derivative of the punch force, N per mm of width of the half model.
+    pub force: f64,
+    /// Gauss points so near a kink that their derivative may hold on one side only.
+    pub doubtful_points: usize,
 }
 
 impl System {
-    /// For problems above and below this one, on the same mesh but for its coordinates.
-    pub fn variation(&self, [above, below]: [Problem; 2], half_width: f64) -> Variation {
+    /// For the problems with more and with less of a parameter of this value, `width` of it apart, on the same mesh but
+    /// for its coordinates.
+    pub fn variation(&self, sides: [Problem; 2], width: f64, value: f64) -> Variation {
         let rank = self.comm().rank() as usize;
         let side = |problem| Subdomain::new(problem, self.partition(), self.numbering(), rank);
-        Variation {
-            sides: [side(above), side(below)],
-            half_width,
-        }
+        Variation::between(self.local(), &sides.map(side), width, value)
     }
 
     /// The sum of all ranks' shares of a residual. Collective.
@@ -82,24 +67,6 @@ impl System {
     pub fn sum_of_shares(&self, shares: &[f64], out: &mut VectorRef) -> petsc::Result<()> {
         out.set_all(0.0)?;
         self.ghosts.reverse_add(shares, out)
-    }
-
-    /// The vector with these local values, of which each rank has its own. Collective.
-    ///
-    /// # Errors
-    /// If PETSc fails.
-    pub fn own_values(&self, local: &[f64]) -> petsc::Result<Vector> {
-        let mut all = self.vector()?;
-        let first = all.ownership_range()?.start;
-        let mut write = all.write()?;
-        for (value, row) in local.iter().zip(self.local().rows()) {
-            let own = usize::try_from(row - first).ok();
-            if let Some(entry) = own.and_then(|own| write.get_mut(own)) {
-                *entry = *value;
-            }
-        }
-        drop(write);
-        Ok(all)
     }
 
     /// Global rows of this rank's gaps that are closed by a contact force at the converged unknowns `u` (local), ascending.
@@ -114,18 +81,6 @@ impl System {
 }
 
 impl Subdomain {
-    /// Leaves of a guess at the derivatives of the unknowns (local) what can be: gaps stay, and so does what an open point
-    /// does not carry at the converged unknowns `u`.
-    pub fn limit_guess(&self, u: &[f64], guess: &mut [f64]) {
-        for point in 0..self.contacts.len() {
-            let m = self.multiplier(point);
-            guess[m + 1] = 0.0;
-            if !self.carries(u, point) {
-                guess[m] = 0.0;
-            }
-        }
-    }
-
     /// Whether a contact point carries a force at converged unknowns.
     fn carries(&self, u: &[f64], point: usize) -> bool {
         let m = self.multiplier(point);
@@ -133,154 +88,260 @@ impl Subdomain {
     }
 }
 
-impl Workspace {
-    /// For the variations of this subdomain.
-    pub fn new(of: &Subdomain) -> Self {
-        let room = || vec![0.0; of.unknown_count()];
+impl Variation {
+    fn between(of: &Subdomain, sides: &[Subdomain; 2], width: f64, value: f64) -> Self {
+        let [above, below] = sides;
+        let coordinates = above.coordinates.iter().zip(&below.coordinates);
+        let nodes: Vec<[f64; 2]> = coordinates
+            .map(|(a, b)| [0, 1].map(|k| (a[k] - b[k]) / width))
+            .collect();
+        let element = |(element, nodes_of): (usize, &[usize; 8])| {
+            let kernels = [above, below].map(|side| &side.kernels[element]);
+            Quad8Slope::new(
+                &of.kernels[element],
+                nodes_of.map(|n| nodes[n]),
+                kernels,
+                width,
+            )
+        };
+        let moves = nodes.iter().any(|node| *node != [0.0; 2]);
+        let elements = moves.then(|| of.connectivity.iter().enumerate().map(element).collect());
+        let [more, less] = [&above.problem, &below.problem];
+        let tool = |side| {
+            let (above, below) = (more.tool(side)?, less.tool(side)?);
+            ProfileSlope::between(&above.profile, &below.profile, width)
+        };
+        let laws = above.contacts.iter().zip(&below.contacts);
         Self {
-            histories: [0, 1].map(|_| History::virgin(of)),
-            u: room(),
-            a: room(),
-            residuals: [0, 1].map(|_| room()),
+            value,
+            young: (more.young_modulus - less.young_modulus) / width / of.problem.young_modulus,
+            material: MaterialSlope::between(&more.material, &less.material, width),
+            lower_tool: tool(SurfaceSide::Bottom),
+            upper_tool: tool(SurfaceSide::Top),
+            contacts: laws
+                .map(|(above, below)| ContactLawSlope::between(&above.law, &below.law, width))
+                .collect(),
+            mesh: elements.map(|elements| (nodes, elements)),
         }
     }
-}
 
-impl Variation {
-    /// The derivative of the history of a sheet that has not moved.
-    pub fn virgin_slope(&self) -> History {
-        let [above, below] = self.sides.each_ref().map(History::virgin);
-        let mut slope = above.clone();
-        slope.slope_between(&above, &below, 2.0 * self.half_width);
-        slope
+    /// The derivative of the history of a sheet that has not moved; a derivative is kept as a history, number for number.
+    pub fn virgin_slope(&self, of: &Subdomain) -> History {
+        let friction = |contact: &LocalContact| {
+            let nodes = contact.nodes.map(|n| self.node(n));
+            let x = contact.reference(&contact.nodes.map(|n| of.coordinates[n]));
+            let (profile, shape) = (&contact.tool.profile, contact.law.shape);
+            let at = profile.distance(x);
+            let by_tool = self
+                .tool(contact.side)
+                .map(|by| profile.distance_slope(&at, by).arc_length);
+            FrictionState {
+                traction: 0.0,
+                arc_length: dot(at.arc_gradient, interpolate(shape, &nodes))
+                    + by_tool.unwrap_or(0.0),
+                nodes,
+            }
+        };
+        History::still(of, of.contacts.iter().map(friction).collect())
     }
 
-    /// The derivative of this rank's share of the residual along `along`. Open contact points, which take no part in
-    /// equilibrium, are left out.
-    ///
-    /// # Errors
-    /// If an element cannot be evaluated beside the solution.
+    /// The derivative of this rank's share of the residual at held unknowns, where the history before the step moves by
+    /// `history` and the accelerations by `a` (local). Open contact points, which take no part in equilibrium, are left
+    /// out.
     pub fn residual_slope(
         &self,
-        step: &LocalStep<'_>,
-        along: &Directions<'_>,
-        work: &mut Workspace,
+        step: &EvaluatedStep<'_>,
+        history: &History,
+        a: &[f64],
         out: &mut [f64],
-    ) -> Result<(), ElementFailure> {
-        for (side, by) in [self.half_width, -self.half_width].into_iter().enumerate() {
-            work.histories[side].move_from(step.before, by, along.history);
-            move_from(&mut work.u, step.u, by, along.u);
-            move_from(&mut work.a, step.a, by, along.a);
-            self.residual(side, step, work)?;
-        }
-        let [above, below] = &work.residuals;
-        for ((out, above), below) in out.iter_mut().zip(above).zip(below) {
-            *out = (above - below) / (2.0 * self.half_width);
-        }
-        Ok(())
-    }
-
-    /// The residual of one side.
-    fn residual(
-        &self,
-        side: usize,
-        step: &LocalStep<'_>,
-        work: &mut Workspace,
-    ) -> Result<(), ElementFailure> {
-        let (of, history) = (&self.sides[side], &work.histories[side]);
-        let out = &mut work.residuals[side];
+    ) {
+        let (of, held) = (step.of, vec![0.0; out.len()]);
         out.fill(0.0);
-        let scale = 1.0 / of.problem.young_modulus;
-        let mut local = ElementForce::ZERO;
-        for element in 0..of.elements.len() {
-            of.element_force(history, element, &work.u, false, &mut local)?;
-            for (i, force) in local.force.iter().enumerate() {
-                out[2 * of.connectivity[element][i / 2] + i % 2] += scale * force;
-            }
-        }
-        of.add_inertia(&work.a, out);
+        self.add_force_slopes(step, history, out);
+        self.add_inertia_slopes(step, a, out);
         for point in (0..of.contacts.len()).filter(|&point| of.carries(step.u, point)) {
-            of.add_contact_point(history, step.t, &work.u, point, out);
+            let (slope, m) = (
+                self.contact(step, point, &held, history),
+                of.multiplier(point),
+            );
+            for (i, force) in slope.force.iter().enumerate() {
+                out[2 * of.contacts[point].nodes[i / 2] + i % 2] += force;
+            }
+            out[m] = slope.closure;
         }
         for support in &of.supports {
             out[support.unknown] = 0.0;
         }
-        Ok(())
     }
 
-    /// After [`Variation::residual_slope`] of the same step, with the derivatives `du` of its unknowns (local): puts the
-    /// derivative of the history at its end into `history`. Returns that of the punch force (N per mm of width, half
-    /// model, this rank's share) and the number of Gauss points that yield on one side only.
-    ///
-    /// # Errors
-    /// As [`Variation::residual_slope`].
-    pub fn advance(
-        &self,
-        step: &LocalStep<'_>,
-        du: &[f64],
-        work: &mut Workspace,
-        history: &mut History,
-    ) -> Result<(f64, usize), ElementFailure> {
-        let mut forces = [0.0; 2];
-        for (side, by) in [self.half_width, -self.half_width].into_iter().enumerate() {
-            let (of, u) = (&self.sides[side], &mut work.u);
-            move_from(u, step.u, by, du);
-            work.histories[side].advance_flowing(of, step.t, u, step.flowing)?;
-            forces[side] = of.punch_force(&work.histories[side], step.t, u, step.u);
+    fn add_force_slopes(&self, step: &EvaluatedStep<'_>, history: &History, out: &mut [f64]) {
+        let (of, held) = (step.of, [[0.0; 2]; 8]);
+        let scale = 1.0 / of.problem.young_modulus;
+        let is_still = self.mesh.is_none() && self.material.is_zero();
+        for (element, nodes) in of.connectivity.iter().enumerate() {
+            let states = history.element(element);
+            if is_still && states.iter().all(|state| *state == PointState::STILL) {
+                continue;
+            }
+            let moves = self.element(element);
+            for (k, (at, before)) in step.points(element).iter().zip(states).enumerate() {
+                let motion = at.motion(k, &held, moves);
+                let slope = at
+                    .response
+                    .slope(&motion.deformation, before, &self.material);
+                let stress = less(
+                    slope.kirchhoff,
+                    self.young,
+                    at.response.response().kirchhoff,
+                );
+                for (&n, force) in nodes.iter().zip(at.force_slope(&motion, &stress)) {
+                    out[2 * n] += scale * force[0];
+                    out[2 * n + 1] += scale * force[1];
+                }
+            }
         }
-        let (sides, by) = (&mut work.histories, self.half_width);
-        let doubtful = History::mend_one_sided(sides, step.before, by, history, step.after);
-        let [above, below] = sides;
-        history.slope_between(above, below, 2.0 * self.half_width);
-        Ok(((forces[0] - forces[1]) / (2.0 * self.half_width), doubtful))
     }
 
-    /// Derivatives of what is read off the sheet's shape at displacements `u` with derivatives `du` (local).
-    pub fn shape_slopes(&self, u: &[f64], du: &[f64]) -> ShapeSlopes {
-        let [above, below] = &self.sides;
-        let by_coordinate = |n: usize| {
-            let (above, below) = (above.coordinates[n], below.coordinates[n]);
-            [0, 1].map(|k| (above[k] - below[k]) / (2.0 * self.half_width))
+    fn add_inertia_slopes(&self, step: &EvaluatedStep<'_>, a: &[f64], out: &mut [f64]) {
+        let of = step.of;
+        let scale = of.problem.density / of.problem.young_modulus;
+        if scale == 0.0 {
+            return;
+        }
+        let moved = a
+            .iter()
+            .zip(step.a)
+            .map(|(moved, a)| moved - self.young * a);
+        of.add_inertia(&moved.collect::<Vec<f64>>(), out);
+        let Some((_, elements)) = &self.mesh else {
+            return;
         };
-        above.shape_slopes(u, du, by_coordinate)
+        for ((element, moves), nodes) in elements.iter().enumerate().zip(&of.connectivity) {
+            let acceleration = of.element_values(element, step.a);
+            for (row, &n) in moves.mass().iter().zip(nodes) {
+                for k in 0..2 {
+                    let sum: f64 = row.iter().zip(&acceleration).map(|(m, a)| m * a[k]).sum();
+                    out[2 * n + k] += scale * sum;
+                }
+            }
+        }
+    }
+
+    /// With the derivatives `du` of the unknowns at the end of a step (local), takes that of the history from its start to
+    /// its end.
+    pub fn advance(&self, step: &EvaluatedStep<'_>, du: &[f64], history: &mut History) -> Advanced {
+        let doubtful_points = self.advance_material(step, du, history);
+        let of = step.of;
+        let slides = of.problem.friction_coefficient > 0.0;
+        let mut force = 0.0;
+        for point in 0..of.contacts.len() {
+            let carries = of.carries(step.u, point);
+            if !slides && !carries {
+                continue;
+            }
+            let slope = self.contact(step, point, du, history);
+            if carries && of.contacts[point].side == SurfaceSide::Top {
+                let [load, by_load] = slope.load;
+                force -= of.problem.young_modulus * (by_load[1] + self.young * load[1]);
+            }
+            history.friction[point] = slope.state;
+        }
+        Advanced {
+            force,
+            doubtful_points,
+        }
+    }
+
+    fn advance_material(
+        &self,
+        step: &EvaluatedStep<'_>,
+        du: &[f64],
+        history: &mut History,
+    ) -> usize {
+        let (of, mut doubtful) = (step.of, 0);
+        let states = history.gauss_points.chunks_exact_mut(history.per_element);
+        for (element, states) in states.enumerate() {
+            let (moved, moves) = (of.element_values(element, du), self.element(element));
+            for (k, (at, state)) in step.points(element).iter().zip(states).enumerate() {
+                let excess = at.excess;
+                let near = excess.abs() < NEAR;
+                if !at.response.response().yields() && !near {
+                    continue;
+                }
+                let motion = at.motion(k, &moved, moves);
+                let slope = at
+                    .response
+                    .slope(&motion.deformation, state, &self.material);
+                if near {
+                    let material = &of.problem.material;
+                    let by = material.excess_slope(&at.response, &slope, state, &self.material);
+                    doubtful += usize::from((by * self.value).abs() * DOUBTFUL > excess.abs());
+                }
+                *state = slope.state;
+            }
+        }
+        doubtful
+    }
+
+    /// Derivatives of a contact point along those of the unknowns.
+    fn contact(
+        &self,
+        step: &EvaluatedStep<'_>,
+        point: usize,
+        du: &[f64],
+        history: &History,
+    ) -> ContactSlope {
+        let (of, m) = (step.of, step.of.multiplier(point));
+        let (contact, (position, traction)) = (&of.contacts[point], &step.contacts[point]);
+        let at = ContactAt {
+            tool: &contact.tool.profile,
+            position,
+            multiplier: step.u[m],
+            traction,
+            before: &step.before.friction[point],
+        };
+        let motion = ContactMotion {
+            nodes: contact
+                .nodes
+                .map(|n| [0, 1].map(|k| self.node(n)[k] + du[2 * n + k])),
+            multiplier: du[m],
+            tool: self.tool(contact.side),
+            law: &self.contacts[point],
+            before: &history.friction[point],
+        };
+        contact.law.slope(&at, &motion)
+    }
+
+    /// Derivatives of what is read off the sheet's shape, with the derivatives `du` of the unknowns (local).
+    pub fn shape_slopes(&self, step: &EvaluatedStep<'_>, du: &[f64]) -> ShapeSlopes {
+        step.of.shape_slopes(step.u, du, |n| self.node(n))
+    }
+
+    /// Motion of a local node, mm per unit.
+    fn node(&self, node: usize) -> [f64; 2] {
+        self.mesh
+            .as_ref()
+            .map_or([0.0; 2], |(nodes, _)| nodes[node])
+    }
+
+    fn element(&self, element: usize) -> Option<&Quad8Slope> {
+        self.mesh.as_ref().map(|(_, elements)| &elements[element])
+    }
+
+    fn tool(&self, side: SurfaceSide) -> Option<&ProfileSlope> {
+        match side {
+            SurfaceSide::Bottom => self.lower_tool.as_ref(),
+            SurfaceSide::Top => self.upper_tool.as_ref(),
+        }
     }
 }
 
-impl Variation {
-    /// The same of a sheet that has been released ([`super::Released`]), whose loads are gone.
-    pub fn released(&self, system: &System) -> Self {
-        let problems = self.sides.each_ref().map(|side| Problem {
-            loads: Vec::new(),
-            lower_tool: None,
-            upper_tool: None,
-            density: 0.0,
-            supports: system.problem().supports.clone(),
-            ..side.problem.clone()
-        });
-        system.variation(problems, self.half_width)
-    }
-}
-
-impl Subdomain {
-    /// Force of this rank's contact points that pushes the punch down, N per mm of width of the half model, at unknowns
-    /// `u` whose history this is; of the points that carry at `base`.
-    fn punch_force(&self, history: &History, t: f64, u: &[f64], base: &[f64]) -> f64 {
-        let young = self.problem.young_modulus;
-        let on_top = |&point: &usize| {
-            self.contacts[point].side == SurfaceSide::Top && self.carries(base, point)
-        };
-        let force = |point: usize| {
-            let (contact, committed) = (&self.contacts[point], &history.friction[point]);
-            let distance = self.contact_position(contact, committed, t, u).distance;
-            let multiplier = u[self.multiplier(point)];
-            -upward(young * multiplier, young * committed.traction, &distance)
-        };
-        (0..self.contacts.len()).filter(on_top).map(force).sum()
-    }
-}
-
-fn move_from(out: &mut [f64], base: &[f64], by: f64, slope: &[f64]) {
-    for ((out, base), slope) in out.iter_mut().zip(base).zip(slope) {
-        *out = base + by * slope;
+/// `a - share b`.
+fn less(a: PlaneTensor, share: f64, b: PlaneTensor) -> PlaneTensor {
+    PlaneTensor {
+        xx: a.xx - share * b.xx,
+        yy: a.yy - share * b.yy,
+        zz: a.zz - share * b.zz,
+        xy: a.xy - share * b.xy,
     }
 }

@@ -14,4 +14,4 @@ pub use benchmark::{die, punch};
 pub use motion::{Motion, PunchMotion};
 pub use outline::{Bend, Corner, FirstTouch, Outline, OutlineError, ToolSide};
 pub use piece::{Distance, Piece};
-pub use profile::{Profile, ProfileError};
+pub use profile::{DistanceSlope, Profile, ProfileError, ProfileSlope};

@@ -1,5 +1,9 @@
 //! Rigid profiles as chains of arcs and segments, with an exact signed distance.
 
+mod slope;
+
+pub use slope::{DistanceSlope, ProfileSlope};
+
 use super::piece::{Distance, End, Piece};
 use crate::plane::{Vector, dot};
 

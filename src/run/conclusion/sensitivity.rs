@@ -60,14 +60,13 @@ fn notes(outcome: &Outcome) -> Vec<String> {
     let doubtful = count(|row| row.doubtful_points > 0);
     if doubtful > 0 {
         notes.push(format!(
-            "in {doubtful} steps Gauss points yielded so little that the derivatives are one-sided there"
+            "in {doubtful} steps Gauss points were about to begin or to cease to yield: the derivatives may be one-sided there"
         ));
     }
     let lost = |row: &&DerivativeRow| row.by_parameter.iter().any(|slopes| slopes.force.is_nan());
     if let Some(row) = rows.iter().find(lost) {
         notes.push(format!(
-            "from t = {} ms on there are no derivatives: the tangent is singular there, or an element cannot be evaluated \
-             beside the solution",
+            "from t = {} ms on there are no derivatives: the tangent is singular there, or an element cannot be evaluated",
             row.t_ms
         ));
     }
