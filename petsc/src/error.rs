@@ -179,10 +179,12 @@ fn general_text(code: c_int) -> Option<String> {
     // SAFETY: PETSc writes a pointer to one of its static strings, or null; a null third argument
     // means "not wanted".
     let found = unsafe { sys::PetscErrorMessage(code, &mut text, std::ptr::null_mut()) };
+    if found != 0 {
+        return None;
+    }
     // SAFETY: the pointer, if any, is a static NUL-terminated string.
-    (found == 0)
-        .then(|| unsafe { text_of(text) })
-        .filter(|text| !text.is_empty())
+    let text = unsafe { text_of(text) };
+    (!text.is_empty()).then_some(text)
 }
 
 /// The text behind a C string; empty for null.

@@ -44,10 +44,14 @@ pub enum RunError {
 }
 
 impl From<petsc::Error> for RunError {
-    /// What a hook of ours failed with went through PETSc only: no option of PETSc's is to blame.
+    /// What a hook of ours failed with has only come through PETSc, and none of its options is to blame, unless the hook
+    /// called PETSc and failed with that.
     fn from(error: petsc::Error) -> Self {
         match error {
-            petsc::Error::Callback { source, .. } => Self::Hook(source),
+            petsc::Error::Callback { source, .. } => match source.downcast::<petsc::Error>() {
+                Ok(error) => Self::from(*error),
+                Err(source) => Self::Hook(source),
+            },
             error => Self::Petsc(error),
         }
     }

@@ -55,7 +55,7 @@ fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     let mask = mask.and_then(|bits| u64::from_str_radix(bits.trim(), 16).ok());
-    mask.is_some_and(|bits| bits >> (signal - 1) & 1 == 1)
+    mask.is_some_and(|bits| (bits >> (signal - 1)) & 1 == 1)
 }
 
 /// Looks at the clock and at signals between steps.

@@ -66,10 +66,8 @@ unsafe fn write_selected<T>(
     let file_space = Closing::new(unsafe { hdf5_sys::h5d::H5Dget_space(dataset) }, H5Sclose)?;
     let length = selection.map_or(1, |(_, count)| count.iter().product::<hsize_t>());
     // SAFETY: one dimension is read from `length`, no maximum is given; closed by `Closing`.
-    let memory_space = Closing::new(
-        unsafe { H5Screate_simple(1, &length, std::ptr::null()) },
-        H5Sclose,
-    )?;
+    let memory_space = unsafe { H5Screate_simple(1, &length, std::ptr::null()) };
+    let memory_space = Closing::new(memory_space, H5Sclose)?;
     if let Some((start, count)) = selection {
         let none = std::ptr::null();
         // SAFETY: `start` and `count` have one entry for each dimension of the dataset; stride and block may be null.
