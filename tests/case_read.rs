@@ -125,6 +125,9 @@ fn what_is_shown_reads_back_as_the_same_case() {
         ("punch_radius", "22.5"),
         ("die_radius", "25.5"),
         ("die_shoulder_radius", "3.5"),
+        // With radii of their own only; tests/case_tools.rs has paths.
+        ("punch_profile", "benchmark"),
+        ("die_profile", "benchmark"),
         ("stroke", "27"),
         ("unload_fraction", "0.25"),
         ("time_load", "800"),
@@ -158,6 +161,8 @@ fn what_is_shown_reads_back_as_the_same_case() {
         ("output_dir", "elsewhere"),
         ("output_every", "0"),
         ("monitor_iterations", "true"),
+        ("quiet", "true"),
+        ("compare", "one,two"),
         ("checkpoint_every", "20"),
         ("checkpoint_minutes", "7.5"),
         ("wall_limit", "3600"),
@@ -333,6 +338,7 @@ fn an_option_without_its_value_is_refused() {
         let bare = [
             "extrapolate",
             "monitor_iterations",
+            "quiet",
             "dry_run",
             "restart",
             "overwrite",

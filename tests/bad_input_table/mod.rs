@@ -477,7 +477,7 @@ pub const MISTAKES: &[Mistake] = &[
         "derivative at the end of the range",
         ONE,
         "-sensitivity friction_coefficient -friction_coefficient 10",
-        "option -sensitivity friction_coefficient: values on both sides of it are needed, and beside it option -friction_coefficient 10.001: the value is out of range; specify a real number: 0 <= value <= 10 (default 0)",
+        "option -sensitivity friction_coefficient: values on both sides of it are needed, and beside it option -friction_coefficient 10.0001: the value is out of range; specify a real number: 0 <= value <= 10 (default 0)",
     ),
     words(
         "derivatives with the linear systems left to PETSc",
