@@ -14,6 +14,7 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -130,6 +131,8 @@ def row(case, code, last, counts):
 
 
 def main():
+    # Under nohup every child would inherit that this signal is ignored.
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
     chosen = sys.argv[1] if len(sys.argv) > 1 else ""
     cases = [case for case in CASES if (case.fast if chosen == "fast" else chosen in f"{case.what} {case.command}")]
     work = pathlib.Path(tempfile.mkdtemp(prefix="ssnp155-hard-use-", dir=os.environ.get("HARD_USE_DIR")))
