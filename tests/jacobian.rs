@@ -33,7 +33,7 @@ fn errors(name: &str, ranks: usize, more: &[&str]) -> Vec<f64> {
     words.extend(more);
     let ended = run(ranks, 120, &words);
     assert!(ended.says("FINISHED"), "{}", ended.text());
-    let steps = ended.stdout.split("100.0 %").next().unwrap();
+    let (steps, _) = ended.stdout.split_once("100.0%").unwrap();
     steps
         .lines()
         .filter_map(|line| line.trim().strip_prefix("||J - Jfd||_F/||J||_F = "))
