@@ -211,7 +211,7 @@ fn a_dry_run_says_and_draws_where_the_tools_are() {
         "3 corners of inputs/tools/v-die.csv, sharpest radius that sticks out 3 mm, holds the sheet from x = 13.2426 to 30 mm",
         "at least 1.041 mm between the tools for a sheet of 1 mm, at a stroke of 10.7 mm",
     ] {
-        assert!(ended.stdout.contains(part), "{part}: {}", ended.stdout);
+        assert!(ended.says(part), "{part}: {}", ended.stdout);
     }
     let sketch = std::fs::read_to_string(folder.join("model.svg")).unwrap();
     assert!(sketch.contains("punch, v-punch.csv") && sketch.contains("die, v-die.csv"));

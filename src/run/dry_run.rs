@@ -13,7 +13,7 @@ use crate::contact::ContactLocation;
 use crate::output::monitor::Monitor;
 use crate::output::{OutputDir, plot};
 use crate::system::{Problem, SubdomainSize, System};
-use crate::text::number;
+use crate::text::{COLUMNS, number, wrapped};
 
 /// Memory of a rank without any unknowns, alone and among others, and for n log2 n with n the unknowns it owns (the
 /// factors of a plane mesh grow so), bytes: fitted to the peaks of resident memory of short runs with 3 924, 9 882,
@@ -22,6 +22,9 @@ use crate::text::number;
 const MEMORY_ALONE: f64 = 50e6;
 const MEMORY_AMONG_OTHERS: f64 = 60e6;
 const MEMORY_PER_UNKNOWN: f64 = 372.0;
+
+/// Columns of the names of what is said.
+const LABEL: usize = 12;
 
 /// Shows the model and draws it as `model.svg` and `.png`; nothing else is written. Collective.
 ///
@@ -38,7 +41,10 @@ pub(super) fn describe(case: &Case, comm: &SimpleCommunicator) -> Result<(), Run
     let tools = tools(case)?;
     let mut text = String::from("dry run: the model, nothing is solved\n\n");
     for (name, value) in facts(case, tools, &system, &shares, &landmarks(case)?) {
-        text.push_str(&format!("{name:<12}  {value}\n"));
+        for (index, line) in wrapped(&value, COLUMNS - LABEL - 2).iter().enumerate() {
+            let name = if index == 0 { name } else { "" };
+            text.push_str(&format!("{name:<LABEL$}  {line}\n"));
+        }
     }
     text.push_str(&table(&shares));
     text.push_str(&format!(
