@@ -2,7 +2,7 @@
 
 use petsc::VectorRef;
 
-use super::solve::{Sought, Tangent};
+use super::solve::{Tangent, Wanted};
 use super::step::Sensitivity;
 use crate::ranks;
 use crate::system::{CondensedSolve, EvaluationError, History, System, SystemError};
@@ -82,16 +82,16 @@ impl Sensitivity {
         // The nodes are those of the sheet with its tools, and so is their variation.
         let histories = self.tracked.iter().map(|t| t.history.without_contact());
         let histories: Vec<History> = histories.collect();
-        let mut sought = Vec::with_capacity(histories.len());
+        let mut wanted = Vec::with_capacity(histories.len());
         for (tracked, history) in self.tracked.iter().zip(&histories) {
-            sought.push(Sought {
+            wanted.push(Wanted {
                 unknowns: system.vector()?,
                 history,
                 tracked,
             });
         }
-        self.cost.solves += tangent.solve(&step, &mut sought)?;
-        for (one, angle) in sought.iter().zip(angles) {
+        self.cost.solves += tangent.solve(&step, &mut wanted)?;
+        for (one, angle) in wanted.iter().zip(angles) {
             let du = system.local_values(&one.unknowns)?;
             let slopes = one.tracked.variation.shape_slopes(&step, &du);
             [_, *angle] = slopes.over_ranks(comm);

@@ -22,7 +22,7 @@ pub(super) struct Tangent<'a> {
 }
 
 /// What is solved for: the derivatives by one parameter.
-pub(super) struct Sought<'a> {
+pub(super) struct Wanted<'a> {
     pub tracked: &'a Tracked,
     /// Of the history before the step.
     pub history: &'a History,
@@ -30,7 +30,7 @@ pub(super) struct Sought<'a> {
     pub unknowns: Vector,
 }
 
-impl Sought<'_> {
+impl Wanted<'_> {
     /// This rank's share of what the step's residual moves by at held unknowns. Collective.
     fn held_residual(
         &self,
@@ -55,16 +55,16 @@ impl Sought<'_> {
 impl Tangent<'_> {
     /// Solves for the derivatives of the unknowns by several parameters side by side and returns the number of solves:
     /// iterative refinement of the guesses. Collective.
-    pub fn solve(&self, step: &EvaluatedStep<'_>, sought: &mut [Sought<'_>]) -> petsc::Result<u64> {
-        for one in &mut *sought {
+    pub fn solve(&self, step: &EvaluatedStep<'_>, wanted: &mut [Wanted<'_>]) -> petsc::Result<u64> {
+        for one in &mut *wanted {
             self.hold(&mut one.unknowns)?;
         }
-        let held = sought.iter().map(|one| one.held_residual(step, self));
+        let held = wanted.iter().map(|one| one.held_residual(step, self));
         let held: Vec<Vec<f64>> = held.collect::<petsc::Result<_>>()?;
-        let mut open: Vec<usize> = (0..sought.len()).collect();
+        let mut open: Vec<usize> = (0..wanted.len()).collect();
         let (mut solves, mut rounds) = (0, 0);
         while !open.is_empty() && rounds < MOST_SOLVES {
-            let added = self.add_what_is_missing(&held, sought, &open)?;
+            let added = self.add_what_is_missing(&held, wanted, &open)?;
             (solves, rounds) = (solves + added.len() as u64, rounds + 1);
             let mut little = added.into_iter();
             open.retain(|_| !little.next().unwrap_or(true));
@@ -76,20 +76,20 @@ impl Tangent<'_> {
     fn add_what_is_missing(
         &self,
         held: &[Vec<f64>],
-        sought: &mut [Sought<'_>],
+        wanted: &mut [Wanted<'_>],
         open: &[usize],
     ) -> petsc::Result<Vec<bool>> {
         let system = self.system;
         let moved = open
             .iter()
-            .map(|&k| system.local_values(&sought[k].unknowns));
+            .map(|&k| system.local_values(&wanted[k].unknowns));
         let moved: Vec<Vec<f64>> = moved.collect::<petsc::Result<_>>()?;
         let mut shares: Vec<Vec<f64>> = open.iter().map(|&k| held[k].clone()).collect();
         self.entries
             .add_products(system.local(), &moved, &mut shares);
         let added = self.on_reduced_set(&shares)?;
         let takes = |(&k, added): (&usize, &Vector)| {
-            let unknowns = &mut sought[k].unknowns;
+            let unknowns = &mut wanted[k].unknowns;
             unknowns.axpy(-1.0, added)?;
             Ok(added.norm2()? <= ADDS_LITTLE * unknowns.norm2()?)
         };

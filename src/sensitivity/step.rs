@@ -6,7 +6,7 @@ use cpu_time::ProcessTime;
 use petsc::{AlphaParameters, CallbackError, Vector, VectorRef};
 
 use super::released::ReleasedSlopes;
-use super::solve::{Sought, Tangent};
+use super::solve::{Tangent, Wanted};
 use super::tracked::{Scheme, Tracked};
 use super::{Beside, Cost, Slopes};
 use crate::case::Parameter;
@@ -192,16 +192,16 @@ fn follow(
     slopes: &mut StepSlopes,
 ) -> petsc::Result<u64> {
     let count = tangent.system.owned_displacements();
-    let mut sought = Vec::with_capacity(tracked.len());
+    let mut wanted = Vec::with_capacity(tracked.len());
     for tracked in &*tracked {
-        sought.push(Sought {
+        wanted.push(Wanted {
             unknowns: tracked.guess(tangent.scheme, count)?,
             history: &tracked.history,
             tracked,
         });
     }
-    let solves = tangent.solve(step, &mut sought)?;
-    let unknowns: Vec<Vector> = sought.into_iter().map(|one| one.unknowns).collect();
+    let solves = tangent.solve(step, &mut wanted)?;
+    let unknowns: Vec<Vector> = wanted.into_iter().map(|one| one.unknowns).collect();
     for (tracked, unknowns) in tracked.iter_mut().zip(unknowns) {
         let (by, doubtful) = tracked.advance(step, tangent, unknowns)?;
         slopes.by_parameter.push(by);
