@@ -65,10 +65,9 @@ def identify(folder, file, parameters, start, options):
     """The exit code and identification.json."""
     sought = ",".join(f"{name}:{low}:{high}" for name, (low, high) in parameters.items())
     code, text = run(folder, [*options, *words(start), "-identify", str(file), "-parameters", sought])
-    try:
-        return code, json.loads((folder / "identification.json").read_text())
-    except OSError:
+    if code not in (0, 1):  # the file is that of an earlier search then, if there is one
         sys.exit(text)
+    return code, json.loads((folder / "identification.json").read_text())
 
 
 def joint_distance(found, exact, names):
