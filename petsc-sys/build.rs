@@ -45,8 +45,9 @@ const FUNCTIONS: &[&str] = &[
     "Mat(FactorSetSchurIS|FactorCreateSchurComplement|SetOptionsPrefixFactor)",
     "Mat(CholeskyFactorSymbolic|CholeskyFactorNumeric|DenseGetArrayRead|DenseRestoreArrayRead|DenseGetLDA)",
     "MatMumpsSetIcntl",
+    "Mat(CreateDense|DenseGetArray|DenseRestoreArray|GetSize|GetLocalSize)",
     // Linear solvers.
-    "KSP(Create|Destroy|SetOperators|SetFromOptions|SetOptionsPrefix|SetType|GetPC|SetUp|Solve)",
+    "KSP(Create|Destroy|SetOperators|SetFromOptions|SetOptionsPrefix|SetType|GetPC|SetUp|Solve|MatSolve)",
     "KSP(GetConvergedReason|GetIterationNumber)",
     "PC(SetType|GetType|GetOperators|SetFailedReason|FactorGetMatSolverType)",
     "PCShell(SetContext|GetContext|SetSetUp|SetApply)",

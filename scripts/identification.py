@@ -9,6 +9,7 @@ The program is target/release/ssnp155, or $SSNP155. Results stay in results-iden
 """
 import csv
 import json
+import math
 import os
 import pathlib
 import random
@@ -37,8 +38,8 @@ def words(values):
     return [word for name, value in values.items() for word in (f"-{name}", f"{value:.10g}")]
 
 
-def curve(file, noise, seed, options):
-    """Writes forces of this program with normal noise, `noise` being a share of each force."""
+def exact_forces(options):
+    """Forces of this program at STROKES."""
     folder = RESULTS / "curve"
     strokes = ",".join(f"{stroke:.6g}" for stroke in STROKES)
     last = STROKES[-1]
@@ -48,11 +49,15 @@ def curve(file, noise, seed, options):
         sys.exit(text)
     with open(folder / "history.csv") as rows:
         force = {round(float(row["stroke_mm"]), 6): float(row["force_N"]) for row in csv.DictReader(rows)}
+    return [force[round(stroke, 6)] for stroke in STROKES]
+
+
+def write(file, forces, noise, seed):
+    """A measured file of these forces with normal noise, `noise` being a share of each force."""
     chance = random.Random(seed)
     with open(file, "w") as table:
         table.write("stroke_mm,force_N,uncertainty_N\n")
-        for stroke in STROKES:
-            exact = force[round(stroke, 6)]
+        for stroke, exact in zip(STROKES, forces):
             table.write(f"{stroke:.6g},{exact * (1 + noise * chance.gauss(0, 1)):.6f},{noise * exact:.6f}\n")
 
 
@@ -60,10 +65,46 @@ def identify(folder, file, parameters, start, options):
     """The exit code and identification.json."""
     sought = ",".join(f"{name}:{low}:{high}" for name, (low, high) in parameters.items())
     code, text = run(folder, [*options, *words(start), "-identify", str(file), "-parameters", sought])
-    try:
-        return code, json.loads((folder / "identification.json").read_text())
-    except OSError:
+    if code not in (0, 1):  # the file is that of an earlier search then, if there is one
         sys.exit(text)
+    return code, json.loads((folder / "identification.json").read_text())
+
+
+def joint_distance(found, exact, names):
+    """The squared distance of an estimate from the hidden values, in the covariance at these; of K by its logarithm, as the
+    program scales it."""
+    def scale(name):
+        return TRUE[name] if name == "hollomon_k" else 1.0
+
+    def away(name, value):
+        return math.log(value / TRUE[name]) if name == "hollomon_k" else value - TRUE[name]
+
+    off = [away(one["name"], one["estimate"]) for one in found["parameters"]]
+    covariance = [[value / scale(one) / scale(other) for value, other in zip(row, names)]
+                  for row, one in zip(exact["covariance"], names)]
+    rows = [[*row, value] for row, value in zip(covariance, off)]
+    solution = list(off)
+    for k in range(len(names)):  # Gauss; the matrix is small and positive definite
+        pivot = max(range(k, len(rows)), key=lambda i: abs(rows[i][k]))
+        rows[k], rows[pivot] = rows[pivot], rows[k]
+        for i in range(k + 1, len(rows)):
+            factor = rows[i][k] / rows[k][k]
+            rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k])]
+    for k in reversed(range(len(names))):
+        rest = sum(rows[k][j] * solution[j] for j in range(k + 1, len(names)))
+        solution[k] = (rows[k][-1] - rest) / rows[k][k]
+    return sum(a * b for a, b in zip(off, solution))
+
+
+def exceeded_by_chance(chi_squared, freedom):
+    """The probability of a larger chi-squared; an odd number of degrees of freedom counts as the even one below and above."""
+    def even(freedom):
+        term = total = math.exp(-chi_squared / 2)
+        for k in range(1, freedom // 2):
+            term *= chi_squared / 2 / k
+            total += term
+        return total
+    return even(freedom) if freedom % 2 == 0 else (even(freedom - 1) + even(freedom + 1)) / 2
 
 
 def twin(seeds, names, options):
@@ -72,20 +113,28 @@ def twin(seeds, names, options):
     parameters = {name: BOUNDS[name] for name in names}
     start = {name: value * START[name] if name in names else value for name, value in TRUE.items()}
     heads = " | ".join(f"{name} (off, in bounds of Cramer and Rao)" for name in names)
-    print(f"| seed | runs | misfit² | way left | {heads} | code |")
-    print("|---" * (len(names) + 5) + "|")
+    forces = exact_forces([*options, *words(TRUE)])
+    write(RESULTS / "truth.csv", forces, 0.01, 0)
+    _, exact = identify(RESULTS / "truth", RESULTS / "truth.csv", parameters, TRUE, [*options, "-most_runs", "1"])
+    print(f"| seed | runs | misfit² | way left | {heads} | joint² | code |")
+    print("|---" * (len(names) + 6) + "|")
+    total = 0.0
     for seed in range(1, seeds + 1):
-        RESULTS.mkdir(exist_ok=True)
         file = RESULTS / f"twin-{seed}.csv"
-        curve(file, 0.01, seed, [*options, *words(TRUE)])
-        _, exact = identify(RESULTS / "truth", file, parameters, TRUE, [*options, "-most_runs", "1"])
+        write(file, forces, 0.01, seed)
         code, found = identify(RESULTS / f"twin-{seed}", file, parameters, start, options)
         cells = []
         for one, best in zip(found["parameters"], exact["parameters"]):
             off = (one["estimate"] - TRUE[one["name"]]) / best["standard_error"]
             cells.append(f"{one['estimate']:.5g} ± {one['standard_error']:.2g} ({off:+.2f})")
         misfit = found["chi_squared"] / found["degrees_of_freedom"]
-        print(f"| {seed} | {found['runs']} | {misfit:.2f} | {found['distance']:.2f} | " + " | ".join(cells) + f" | {code} |", flush=True)
+        joint = joint_distance(found, exact, names)
+        total += joint
+        print(f"| {seed} | {found['runs']} | {misfit:.2f} | {found['distance']:.2f} | " + " | ".join(cells)
+              + f" | {joint:.2f} | {code} |", flush=True)
+    freedom = seeds * len(names)
+    print(f"sum of joint²: {total:.1f} for {freedom} degrees of freedom, exceeded by chance in"
+          f" {100 * exceeded_by_chance(total, freedom):.0f} of 100 cases")
 
 
 def code_aster(file):
@@ -112,7 +161,7 @@ if __name__ == "__main__":
     RESULTS.mkdir(exist_ok=True)
     match sys.argv[1:]:
         case ["curve", file, noise, seed, *options]:
-            curve(file, float(noise), int(seed), options)
+            write(file, exact_forces(options), float(noise), int(seed))
         case ["twin", seeds, names, *options]:
             twin(int(seeds), names.split(","), options)
         case ["code_aster", file]:

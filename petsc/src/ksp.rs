@@ -7,6 +7,7 @@ use petsc_sys as sys;
 
 use crate::{
     KspReason,
+    block::BlockRef,
     error::{Result, check, text_of},
     handle::petsc_object,
     matrix::MatrixRef,
@@ -44,6 +45,16 @@ impl Ksp {
     pub fn solve(&mut self, b: &VectorRef, x: &mut VectorRef) -> Result<KspReason> {
         // SAFETY: live objects; PETSc checks the layouts.
         check(unsafe { sys::KSPSolve(self.raw(), b.raw(), x.raw()) })?;
+        self.converged_reason()
+    }
+
+    /// Solves `A X = B` for all columns at once. Collective.
+    ///
+    /// # Errors
+    /// As [`Ksp::solve`].
+    pub fn solve_block(&mut self, b: &BlockRef, x: &mut BlockRef) -> Result<KspReason> {
+        // SAFETY: live objects; PETSc checks the layouts.
+        check(unsafe { sys::KSPMatSolve(self.raw(), b.raw(), x.raw()) })?;
         self.converged_reason()
     }
 }

@@ -50,6 +50,7 @@
 #![deny(clippy::unwrap_used, clippy::expect_used)]
 
 mod agree;
+mod block;
 mod callback;
 mod error;
 mod factorization;
@@ -71,6 +72,7 @@ mod vector;
 pub mod log;
 pub mod options;
 
+pub use block::{Block, BlockRef};
 pub use error::{CallbackError, Error, Evaluation, Failure, Result};
 pub use factorization::{FactorKind, FactorStatus, Factorization};
 pub use guard::{ReadGuard, WriteGuard};

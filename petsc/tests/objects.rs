@@ -4,7 +4,9 @@ mod common;
 
 use common::{fill, vector};
 use mpi::topology::{Communicator, SimpleCommunicator};
-use petsc::{Error, FactorKind, FactorStatus, Factorization, Ksp, Matrix, Scatter, log, options};
+use petsc::{
+    Block, Error, FactorKind, FactorStatus, Factorization, Ksp, Matrix, Scatter, log, options,
+};
 
 fn main() {
     common::run(&[
@@ -22,6 +24,7 @@ fn main() {
         ("numeric_factorisation_is_repeated_alone", factorization),
         ("a_singular_matrix_is_a_status", singular),
         ("linear_solver_follows_its_matrix", linear_solver),
+        ("a_block_is_solved_as_its_columns_are", block),
         ("a_shell_matrix_is_its_product", shell_matrix),
         ("events_and_stages_nest", logging),
     ]);
@@ -321,6 +324,36 @@ fn linear_solver(comm: &SimpleCommunicator) {
         Some(preconditioner)
     );
     assert_eq!(ksp.factor_solver().unwrap().as_deref(), package);
+}
+
+fn block(comm: &SimpleCommunicator) {
+    let (mut matrix, values) = line(comm, 1.0);
+    matrix.set_values_coo(&values).unwrap();
+    let mut ksp = Ksp::new(comm).unwrap();
+    ksp.set_operator(&matrix).unwrap();
+    ksp.set_type("preonly").unwrap();
+    let several = comm.size() > 1 && !common::has_mumps();
+    ksp.set_preconditioner(if several { "redundant" } else { "lu" })
+        .unwrap();
+    let exact = [1.0, 2.0, 3.0].map(|k| vector(comm, 3, |i| (k * f64::from(i)).cos()));
+    let mut column = exact[0].duplicate().unwrap();
+    let mut right_sides = Block::new(comm, 3, 3).unwrap();
+    let mut found = Block::new(comm, 3, 3).unwrap();
+    assert_eq!(found.columns().unwrap(), 3);
+    for (k, x) in exact.iter().enumerate() {
+        matrix.mult(x, &mut column).unwrap();
+        right_sides.set_column(k, &column).unwrap();
+    }
+    let reason = ksp.solve_block(&right_sides, &mut found).unwrap();
+    assert!(reason.is_converged());
+    for (k, x) in exact.iter().enumerate() {
+        found.copy_column(k, &mut column).unwrap();
+        column.axpy(-1.0, x).unwrap();
+        assert!(column.norm_max().unwrap() < 1e-10, "column {k}");
+    }
+    assert!(found.copy_column(3, &mut column).is_err());
+    let longer = vector(comm, 4, |_| 1.0);
+    assert!(right_sides.set_column(0, &longer).is_err());
 }
 
 fn shell_matrix(comm: &SimpleCommunicator) {

@@ -67,6 +67,9 @@ impl Described for Constant {
     fn is_real(&self) -> bool {
         true
     }
+    fn is_exponent(&self) -> bool {
+        self.is_exponent
+    }
     fn allowed(&self) -> String {
         self.kind().allowed()
     }

@@ -22,6 +22,8 @@ pub struct Sought {
     pub lower: f64,
     /// Greatest value.
     pub upper: f64,
+    /// Whether it is an exponent, a factor on a logarithm.
+    pub is_exponent: bool,
 }
 
 /// Parameters with their bounds.
@@ -54,6 +56,7 @@ fn sought(text: &str) -> Result<Sought, Problem> {
         unit: option.unit(),
         lower,
         upper,
+        is_exponent: option.is_exponent(),
     })
 }
 

@@ -156,6 +156,10 @@ pub(crate) trait Described: Sync {
     fn meaning(&self) -> &'static str;
     /// Whether its values are real numbers.
     fn is_real(&self) -> bool;
+    /// Whether it is an exponent, a factor on a logarithm.
+    fn is_exponent(&self) -> bool {
+        false
+    }
     /// The range or the choices.
     fn allowed(&self) -> String;
     /// The value a case has, as text; none if the case has no use for the option.

@@ -7,6 +7,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 use petsc::Session;
 use serde::Serialize;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::fit::{Ended, fit, read_options};
 use super::report;
@@ -20,8 +21,8 @@ use crate::run::{Ending, refuse_bad_options};
 
 /// How far the search may stop from the least sum of squares, in standard errors.
 const FARTHEST: f64 = 0.1;
-/// The upper 0.1 % of the normal distribution.
-const UNLIKELY: f64 = 3.09;
+/// How often chance may exceed the limit of the misfit.
+const UNLIKELY: f64 = 1e-3;
 
 /// What is known of a parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -266,11 +267,9 @@ fn verdicts(
     VerdictTable { rows }
 }
 
-/// What χ² exceeds by chance once in 1000 (Wilson and Hilferty 1931, PNAS 17, 684-688).
+/// What χ² exceeds by chance once in 1000; nothing to test where no degree of freedom is left.
 fn largest_chi_squared(freedom: usize) -> f64 {
-    let n = freedom as f64;
-    let spread = 2.0 / (9.0 * n);
-    n * (1.0 - spread + UNLIKELY * spread.sqrt()).powi(3)
+    ChiSquared::new(freedom as f64).map_or(f64::NAN, |law| law.inverse_cdf(1.0 - UNLIKELY))
 }
 
 #[cfg(test)]
@@ -279,9 +278,8 @@ mod tests {
 
     #[test]
     fn the_limit_of_the_misfit_is_that_of_the_tables() {
-        // The approximation is 0.6 % too high at 10 and better beyond.
-        for (freedom, table) in [(10, 29.588), (40, 73.402), (100, 149.449)] {
-            assert!((largest_chi_squared(freedom) / table - 1.0).abs() < 1e-2);
+        for (freedom, table) in [(1, 10.828), (10, 29.588), (40, 73.402), (100, 149.449)] {
+            assert!((largest_chi_squared(freedom) - table).abs() < 5.1e-4);
         }
     }
 }

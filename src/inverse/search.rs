@@ -179,6 +179,7 @@ impl Search {
         let sought = &self.runs.parameters()[parameter];
         let at = |m: &MeasuredPoint| {
             let slope = slopes_at(ran, sought.name, m.stroke)?.force;
+            let slope = slope.is_finite().then_some(slope)?;
             Some(slope * stretch(sought, value) / m.uncertainty)
         };
         let mut column: Vec<f64> = self.measured.iter().map(at).collect::<Option<_>>()?;
@@ -244,10 +245,11 @@ pub(super) fn width(sought: &Sought) -> f64 {
     sought.upper - sought.lower
 }
 
-/// Whether a parameter is scaled by its logarithm: bounds on one side of zero say that it is a matter of size, and the
-/// constants of a power law have straight valleys then.
+/// Whether a parameter is scaled by its logarithm: bounds on one side of zero say that it is a matter of size. An exponent is none:
+/// of log K + n log p it is a straight line of log K and n, not of their logarithms, that leaves a stress as it is, and the
+/// valley of K and n is bent by many of its widths where n has its logarithm for a scale.
 fn is_logarithmic(sought: &Sought) -> bool {
-    sought.lower > 0.0
+    sought.lower > 0.0 && !sought.is_exponent
 }
 
 /// The place of a value in the unit interval of its bounds.

@@ -1,50 +1,31 @@
 //! What a curve says about parameters: singular values of the weighted derivatives, and the covariance that follows.
 
+use nalgebra::{DMatrix, SVD};
+
 /// A singular value below this share of the largest is rounding: the curve says nothing about its direction.
 const ROUNDING: f64 = 1e-10;
-/// Sweeps of the Jacobi rotations; five are usual.
-const MOST_SWEEPS: usize = 60;
+/// Iterations of the singular values; some for each are usual.
+const MOST_ITERATIONS: usize = 1000;
 
-/// Singular values, the largest first, and their right singular vectors, of a matrix given by its columns. One-sided Jacobi
-/// rotations (Hestenes 1958, J. SIAM 6, 51-90) get small ones as exactly as large ones.
-pub fn singular_values(mut columns: Vec<Vec<f64>>) -> (Vec<f64>, Vec<Vec<f64>>) {
-    let n = columns.len();
-    let unit = |i: usize| (0..n).map(|k| f64::from(u8::from(i == k))).collect();
-    let mut vectors: Vec<Vec<f64>> = (0..n).map(unit).collect();
-    for _ in 0..MOST_SWEEPS {
-        let mut turned = false;
-        for (p, q) in (0..n).flat_map(|p| (p + 1..n).map(move |q| (p, q))) {
-            let (a, b) = (dot(&columns[p], &columns[p]), dot(&columns[q], &columns[q]));
-            let c = dot(&columns[p], &columns[q]);
-            if c.abs() <= f64::EPSILON * (a * b).sqrt() {
-                continue;
-            }
-            turned = true;
-            let zeta = (b - a) / (2.0 * c);
-            let tangent = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
-            rotate(&mut columns, p, q, tangent);
-            rotate(&mut vectors, p, q, tangent);
-        }
-        if !turned {
-            break;
-        }
-    }
-    let mut pairs: Vec<(f64, Vec<f64>)> = columns
-        .iter()
-        .map(|c| dot(c, c).sqrt())
-        .zip(vectors)
-        .collect();
-    pairs.sort_by(|one, other| other.0.total_cmp(&one.0));
-    pairs.into_iter().unzip()
-}
-
-fn rotate(columns: &mut [Vec<f64>], p: usize, q: usize, tangent: f64) {
-    let cosine = 1.0 / tangent.hypot(1.0);
-    let sine = cosine * tangent;
-    let (left, right) = columns.split_at_mut(q);
-    for (x, y) in left[p].iter_mut().zip(&mut right[0]) {
-        (*x, *y) = (cosine * *x - sine * *y, sine * *x + cosine * *y);
-    }
+/// Singular values, the largest first, and their right singular vectors, of a matrix given by its columns, which are all of
+/// one length; zeros where they cannot be had, as with entries that are not finite.
+pub fn singular_values(columns: &[Vec<f64>]) -> (Vec<f64>, Vec<Vec<f64>>) {
+    let (rows, n) = (columns.first().map_or(0, Vec::len), columns.len());
+    let nothing = || (vec![0.0; n], DMatrix::identity(n, n));
+    let finite = columns.iter().flatten().all(|entry| entry.is_finite());
+    // As many rows as columns at least, so that there is a value for each column.
+    let entry = |row: usize, column: usize| columns[column].get(row).copied().unwrap_or(0.0);
+    let matrix = DMatrix::from_fn(rows.max(n), n, entry);
+    let found = if finite && n > 0 {
+        SVD::try_new(matrix, false, true, f64::EPSILON, MOST_ITERATIONS)
+    } else {
+        None
+    };
+    let (values, vectors) = found
+        .and_then(|svd| Some((svd.singular_values.as_slice().to_vec(), svd.v_t?)))
+        .unwrap_or_else(nothing);
+    let vectors = vectors.row_iter().map(|row| row.iter().copied().collect());
+    (values, vectors.collect())
 }
 
 /// The scalar product.
@@ -66,7 +47,7 @@ pub struct Statistics {
 impl Statistics {
     /// From the derivatives of all weighted residuals by each parameter.
     pub fn of(columns: &[Vec<f64>]) -> Self {
-        let (singular_values, directions) = singular_values(columns.to_vec());
+        let (singular_values, directions) = singular_values(columns);
         let n = columns.len();
         let floor = ROUNDING * singular_values.first().copied().unwrap_or_default();
         let entry = |i: usize, k: usize| {
@@ -120,7 +101,7 @@ mod tests {
     #[test]
     fn a_known_matrix_has_its_singular_values() {
         // (3 0; 4 5): the product is 15, the sum of squares 50.
-        let (values, vectors) = singular_values(vec![vec![3.0, 4.0], vec![0.0, 5.0]]);
+        let (values, vectors) = singular_values(&[vec![3.0, 4.0], vec![0.0, 5.0]]);
         assert!(
             (values[0] - 45f64.sqrt()).abs() < 1e-14 && (values[1] - 5f64.sqrt()).abs() < 1e-14
         );
@@ -130,12 +111,19 @@ mod tests {
 
     #[test]
     fn a_small_singular_value_keeps_its_digits() {
-        let columns = vec![vec![1.0, 0.0, 0.0], vec![1.0, 1e-9, 0.0]];
-        let (values, _) = singular_values(columns);
+        let columns = [vec![1.0, 0.0, 0.0], vec![1.0, 1e-9, 0.0]];
+        let (values, _) = singular_values(&columns);
         assert!(
             (values[1] * values[0] / 1e-9 - 1.0).abs() < 1e-6,
             "{values:?}"
         );
+    }
+
+    #[test]
+    fn what_is_not_finite_says_nothing() {
+        let statistics = Statistics::of(&[vec![1.0, f64::NAN], vec![0.5, -1.0]]);
+        assert!(statistics.standard_errors().iter().all(|e| e.is_infinite()));
+        assert!(singular_values(&[]).0.is_empty());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use petsc::VectorRef;
 
-use super::solve::Tangent;
+use super::solve::{Tangent, Wanted};
 use super::step::Sensitivity;
 use crate::ranks;
 use crate::system::{CondensedSolve, EvaluationError, History, System, SystemError};
@@ -79,13 +79,22 @@ impl Sensitivity {
             closed: &[],
             scheme: None,
         };
-        for (tracked, angle) in self.tracked.iter().zip(angles) {
-            // The nodes are those of the sheet with its tools, and so is their variation.
-            let history = tracked.history.without_contact();
-            let (unknowns, solves) = tracked.solve(&step, &tangent, system.vector()?, &history)?;
-            self.cost.solves += solves;
-            let du = system.local_values(&unknowns)?;
-            [_, *angle] = tracked.variation.shape_slopes(&step, &du).over_ranks(comm);
+        // The nodes are those of the sheet with its tools, and so is their variation.
+        let histories = self.tracked.iter().map(|t| t.history.without_contact());
+        let histories: Vec<History> = histories.collect();
+        let mut wanted = Vec::with_capacity(histories.len());
+        for (tracked, history) in self.tracked.iter().zip(&histories) {
+            wanted.push(Wanted {
+                unknowns: system.vector()?,
+                history,
+                tracked,
+            });
+        }
+        self.cost.solves += tangent.solve(&step, &mut wanted)?;
+        for (one, angle) in wanted.iter().zip(angles) {
+            let du = system.local_values(&one.unknowns)?;
+            let slopes = one.tracked.variation.shape_slopes(&step, &du);
+            [_, *angle] = slopes.over_ranks(comm);
         }
         Ok(())
     }

@@ -3,10 +3,10 @@
 use std::rc::Rc;
 
 use cpu_time::ProcessTime;
-use petsc::{AlphaParameters, CallbackError, VectorRef};
+use petsc::{AlphaParameters, CallbackError, Vector, VectorRef};
 
 use super::released::ReleasedSlopes;
-use super::solve::Tangent;
+use super::solve::{Tangent, Wanted};
 use super::tracked::{Scheme, Tracked};
 use super::{Beside, Cost, Slopes};
 use crate::case::Parameter;
@@ -151,14 +151,11 @@ impl Sensitivity {
             closed: &closed,
             scheme: scheme.as_ref(),
         };
-        for tracked in &mut self.tracked {
-            let Some(evaluated) = &evaluated else {
-                slopes.by_parameter.push(NOT_KNOWN);
-                continue;
-            };
-            let (by, doubtful) = tracked.follow(evaluated, &tangent, &mut self.cost)?;
-            slopes.by_parameter.push(by);
-            slopes.doubtful_points = slopes.doubtful_points.max(doubtful);
+        match &evaluated {
+            Some(evaluated) => {
+                self.cost.solves += follow(&mut self.tracked, evaluated, &tangent, &mut slopes)?
+            }
+            None => slopes.by_parameter = vec![NOT_KNOWN; self.tracked.len()],
         }
         self.cost.parameter_seconds += began.elapsed().as_secs_f64();
         Ok(slopes)
@@ -187,18 +184,42 @@ impl Sensitivity {
     }
 }
 
+/// Follows a step whose tangent is factorised, by all parameters, and returns the number of solves. Collective.
+fn follow(
+    tracked: &mut [Tracked],
+    step: &EvaluatedStep<'_>,
+    tangent: &Tangent<'_>,
+    slopes: &mut StepSlopes,
+) -> petsc::Result<u64> {
+    let count = tangent.system.owned_displacements();
+    let mut wanted = Vec::with_capacity(tracked.len());
+    for tracked in &*tracked {
+        wanted.push(Wanted {
+            unknowns: tracked.guess(tangent.scheme, count)?,
+            history: &tracked.history,
+            tracked,
+        });
+    }
+    let solves = tangent.solve(step, &mut wanted)?;
+    let unknowns: Vec<Vector> = wanted.into_iter().map(|one| one.unknowns).collect();
+    for (tracked, unknowns) in tracked.iter_mut().zip(unknowns) {
+        let (by, doubtful) = tracked.advance(step, tangent, unknowns)?;
+        slopes.by_parameter.push(by);
+        slopes.doubtful_points = slopes.doubtful_points.max(doubtful);
+    }
+    Ok(solves)
+}
+
 impl Tracked {
-    /// Follows a step whose tangent is factorised. The derivatives, and the number of doubtful points. Collective.
-    fn follow(
+    /// Takes the derivatives of the unknowns at the end of a step over. What follows from them, and the number of doubtful
+    /// points. Collective.
+    fn advance(
         &mut self,
         step: &EvaluatedStep<'_>,
         tangent: &Tangent<'_>,
-        cost: &mut Cost,
+        unknowns: Vector,
     ) -> petsc::Result<(Slopes, u32)> {
         let system = tangent.system;
-        let guess = self.guess(tangent.scheme, system.owned_displacements())?;
-        let (unknowns, solves) = self.solve(step, tangent, guess, &self.history)?;
-        cost.solves += solves;
         let du = system.local_values(&unknowns)?;
         let advanced = self.variation.advance(step, &du, &mut self.history);
         self.move_on(unknowns, tangent.scheme, system.owned_displacements())?;

@@ -71,9 +71,10 @@ impl Tracked {
         count: usize,
         out: &mut Vector,
     ) -> petsc::Result<()> {
-        let u = self.unknowns.read()?;
-        let (v, a) = (self.velocity.read()?, self.acceleration.read()?);
-        let mut out = out.write()?;
+        let u: &[f64] = &self.unknowns.read()?;
+        let v: &[f64] = &self.velocity.read()?;
+        let a: &[f64] = &self.acceleration.read()?;
+        let out: &mut [f64] = &mut out.write()?;
         let alpha = scheme.parameters.alpha_m;
         for i in 0..count {
             let end = scheme.end_acceleration(-u[i], v[i], a[i]);
@@ -87,7 +88,8 @@ impl Tracked {
     pub fn guess(&self, scheme: Option<&Scheme>, count: usize) -> petsc::Result<Vector> {
         let mut guess = self.unknowns.to_owned()?;
         if let Some(scheme) = scheme {
-            let (v, mut guess) = (self.velocity.read()?, guess.write()?);
+            let v: &[f64] = &self.velocity.read()?;
+            let guess: &mut [f64] = &mut guess.write()?;
             for i in 0..count {
                 guess[i] += scheme.dt * v[i];
             }
@@ -106,8 +108,10 @@ impl Tracked {
         let Some(scheme) = scheme else {
             return Ok(());
         };
-        let (u, before) = (self.unknowns.read()?, before.read()?);
-        let (mut v, mut a) = (self.velocity.write()?, self.acceleration.write()?);
+        let u: &[f64] = &self.unknowns.read()?;
+        let before: &[f64] = &before.read()?;
+        let v: &mut [f64] = &mut self.velocity.write()?;
+        let a: &mut [f64] = &mut self.acceleration.write()?;
         let (dt, gamma) = (scheme.dt, scheme.parameters.gamma);
         for i in 0..count {
             let end = scheme.end_acceleration(u[i] - before[i], v[i], a[i]);

@@ -4,8 +4,9 @@
 
 use std::cell::RefCell;
 
+use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
-use petsc::{FactorKind, Ksp, Matrix, Scatter, Vector, VectorRef};
+use petsc::{Block, FactorKind, Ksp, Matrix, Scatter, Vector, VectorRef};
 
 use super::System;
 use super::condensation::{Condensation, CondensedPattern};
@@ -34,6 +35,7 @@ pub enum CondensedMethod {
 /// Solves with a Jacobian and an active set.
 pub struct CondensedSolve {
     scatter: Scatter,
+    comm: SimpleCommunicator,
     /// Displacements this rank owns.
     owned: usize,
     parts: RefCell<Parts>,
@@ -85,6 +87,7 @@ impl CondensedSolve {
         let scatter = Scatter::new(&parts.right_side, &rows)?;
         Ok(Self {
             scatter,
+            comm: comm.duplicate(),
             owned,
             parts: RefCell::new(parts),
         })
@@ -117,35 +120,79 @@ impl CondensedSolve {
     /// # Errors
     /// If PETSc fails.
     pub fn solve(&self, r: &VectorRef, step: &mut VectorRef) -> petsc::Result<()> {
+        let parts = &mut *self.parts.borrow_mut();
+        self.condense(parts, r)?;
+        match &mut parts.solver {
+            Solver::Whole(_, solver) => {
+                solver.solve(&parts.right_side, &mut parts.step)?;
+            }
+            Solver::Substructures(solver) => {
+                self.scatter
+                    .forward(&parts.right_side, &mut parts.local_step)?;
+                solver.solve(&parts.local_step, &mut parts.step)?;
+            }
+        }
+        self.expand(parts, r, step)
+    }
+
+    /// The same for several right-hand sides, where possible at once, which costs MUMPS less than one after the other.
+    /// Collective.
+    ///
+    /// # Errors
+    /// If PETSc fails.
+    pub fn solve_all(&self, r: &[Vector], steps: &mut [Vector]) -> petsc::Result<()> {
+        let together = matches!(self.parts.borrow().solver, Solver::Whole(..));
+        if together && r.len() > 1 {
+            return self.solve_together(r, steps);
+        }
+        let mut pairs = r.iter().zip(steps);
+        pairs.try_for_each(|(r, step)| self.solve(r, step))
+    }
+
+    fn solve_together(&self, r: &[Vector], steps: &mut [Vector]) -> petsc::Result<()> {
+        let parts = &mut *self.parts.borrow_mut();
+        let mut right_sides = Block::new(&self.comm, self.owned, r.len())?;
+        let mut condensed_steps = Block::new(&self.comm, self.owned, r.len())?;
+        for (column, r) in r.iter().enumerate() {
+            self.condense(parts, r)?;
+            right_sides.set_column(column, &parts.right_side)?;
+        }
+        if let Solver::Whole(_, solver) = &mut parts.solver {
+            solver.solve_block(&right_sides, &mut condensed_steps)?;
+        }
+        for (column, (r, step)) in r.iter().zip(steps).enumerate() {
+            condensed_steps.copy_column(column, &mut parts.step)?;
+            self.expand(parts, r, step)?;
+        }
+        Ok(())
+    }
+
+    /// The right-hand side of the condensed system.
+    fn condense(&self, parts: &mut Parts, r: &VectorRef) -> petsc::Result<()> {
         let Parts {
             condensation,
-            solver,
             right_side,
-            step: condensed_step,
             local_step,
             local_right_side,
             ..
-        } = &mut *self.parts.borrow_mut();
+        } = parts;
         let r = r.read()?;
-        let owned = self.owned;
-        right_side.write()?.copy_from_slice(&r[..owned]);
+        right_side.write()?.copy_from_slice(&r[..self.owned]);
         // The row of a prescribed displacement is its step.
         self.scatter.forward(right_side, local_step)?;
         condensation.forward(&r, local_step, local_right_side);
-        self.scatter.reverse_add(local_right_side, right_side)?;
-        match solver {
-            Solver::Whole(_, solver) => {
-                solver.solve(right_side, condensed_step)?;
-            }
-            Solver::Substructures(solver) => {
-                self.scatter.forward(right_side, local_step)?;
-                solver.solve(local_step, condensed_step)?;
-            }
-        }
-        self.scatter.forward(condensed_step, local_step)?;
+        self.scatter.reverse_add(local_right_side, right_side)
+    }
+
+    /// The step that belongs to the solution of the condensed system.
+    fn expand(&self, parts: &mut Parts, r: &VectorRef, step: &mut VectorRef) -> petsc::Result<()> {
+        let local_step = &mut parts.local_step;
+        self.scatter.forward(&parts.step, local_step)?;
         let mut step = step.write()?;
-        step[..owned].copy_from_slice(&condensed_step.read()?);
-        condensation.backward(&r, local_step, &mut step);
+        step[..self.owned].copy_from_slice(&parts.step.read()?);
+        parts
+            .condensation
+            .backward(&r.read()?, local_step, &mut step);
         Ok(())
     }
 

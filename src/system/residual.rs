@@ -74,10 +74,12 @@ impl Subdomain {
         for (element, nodes) in self.connectivity.iter().enumerate() {
             let acceleration = self.element_values(element, a);
             for (row, &n) in self.kernels[element].mass().iter().zip(nodes) {
-                for k in 0..2 {
-                    let sum: f64 = row.iter().zip(&acceleration).map(|(m, a)| m * a[k]).sum();
-                    out[2 * n + k] += scale * sum;
+                let mut sum = [0.0; 2];
+                for (m, a) in row.iter().zip(&acceleration) {
+                    sum = [sum[0] + m * a[0], sum[1] + m * a[1]];
                 }
+                out[2 * n] += scale * sum[0];
+                out[2 * n + 1] += scale * sum[1];
             }
         }
     }

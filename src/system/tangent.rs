@@ -77,48 +77,31 @@ impl JacobianEntries {
             .chunks_exact(CONTACT_ENTRIES)
     }
 
-    /// Adds the product with `u` to the rows of `out` (both local); rows of prescribed displacements take no part.
-    pub fn add_product(&self, of: &Subdomain, u: &[f64], out: &mut [f64]) {
-        use CONTACT_LAYOUT as AT;
+    /// Adds the products with each of `u` to the rows of that of `out` (all local); rows of prescribed displacements take no
+    /// part. The entries are read once for all.
+    pub fn add_products(&self, of: &Subdomain, u: &[Vec<f64>], out: &mut [Vec<f64>]) {
         let elements = self.of_elements().chunks_exact(ELEMENT_ENTRIES);
         for (element, entries) in elements.enumerate() {
-            let (nodes, values) = (&of.connectivity[element], of.element_values(element, u));
-            // A translation strains nothing, but for the entries' rounding.
-            let [first, ..] = values;
-            let moved = values.map(|u| [0, 1].map(|k| u[k] - first[k]));
-            let mut sum = [0.0; 16];
-            // The entries are symmetric.
-            for (row, value) in entries.chunks_exact(16).zip(moved.as_flattened()) {
-                for (sum, entry) in sum.iter_mut().zip(row) {
-                    *sum += entry * value;
-                }
-            }
             let masses = of.kernels[element].mass();
-            for (a, &n) in nodes.iter().enumerate() {
-                let mass = self.inertia * masses[a].iter().sum::<f64>();
-                for k in 0..2 {
-                    out[2 * n + k] += sum[2 * a + k] + mass * first[k];
+            let masses = masses.map(|row| self.inertia * row.iter().sum::<f64>());
+            for (u, out) in u.iter().zip(&mut *out) {
+                let values = of.element_values(element, u);
+                let product = element_product(entries, &masses, values);
+                for (&n, sum) in of.connectivity[element].iter().zip(product) {
+                    out[2 * n] += sum[0];
+                    out[2 * n + 1] += sum[1];
                 }
             }
         }
         for (point, entries) in self.of_contacts().enumerate() {
-            let nodes = of.contacts[point].nodes;
-            let at: [usize; 6] = std::array::from_fn(|i| 2 * nodes[i / 2] + i % 2);
-            let (values, m) = (at.map(|i| u[i]), of.multiplier(point));
-            let by_multiplier = &entries[AT.force_multiplier];
-            let rows = entries[AT.force_u].chunks_exact(6).zip(by_multiplier);
-            for (&i, (row, by_multiplier)) in at.iter().zip(rows) {
-                out[i] += product(row, &values) + by_multiplier * u[m];
+            for (u, out) in u.iter().zip(&mut *out) {
+                add_contact_product(of, point, entries, u, out);
             }
-            out[m] += product(&entries[AT.closure_u], &values)
-                + entries[AT.closure_multiplier] * u[m]
-                + entries[AT.closure_gap] * u[m + 1];
-            out[m + 1] += product(&entries[AT.complementarity_u], &values)
-                + entries[AT.complementarity_multiplier] * u[m]
-                + entries[AT.complementarity_gap] * u[m + 1];
         }
-        for support in &of.supports {
-            out[support.unknown] = 0.0;
+        for out in out {
+            for support in &of.supports {
+                out[support.unknown] = 0.0;
+            }
         }
     }
 
@@ -131,8 +114,45 @@ impl JacobianEntries {
     }
 }
 
-fn product(row: &[f64], values: &[f64]) -> f64 {
-    row.iter().zip(values).map(|(a, b)| a * b).sum()
+/// Of an element, whose nodes have these shares of its inertia (1/mm).
+fn element_product(entries: &[f64], masses: &[f64; 8], values: [[f64; 2]; 8]) -> [[f64; 2]; 8] {
+    // A translation strains nothing, but for the entries' rounding.
+    let [first, ..] = values;
+    let mut sum = [[0.0; 2]; 8];
+    for (sum, mass) in sum.iter_mut().zip(masses) {
+        *sum = [mass * first[0], mass * first[1]];
+    }
+    let moved = values.map(|u| [u[0] - first[0], u[1] - first[1]]);
+    // The entries are symmetric.
+    let rows = entries.chunks_exact(16).filter_map(<[f64]>::first_chunk);
+    for (row, value) in rows.zip(moved.as_flattened()) {
+        let row: &[f64; 16] = row;
+        for (sum, entry) in sum.as_flattened_mut().iter_mut().zip(row) {
+            *sum += entry * value;
+        }
+    }
+    sum
+}
+
+/// Of a contact point; `u` and `out` are local.
+fn add_contact_product(of: &Subdomain, point: usize, entries: &[f64], u: &[f64], out: &mut [f64]) {
+    use CONTACT_LAYOUT as AT;
+    let (nodes, m) = (of.contacts[point].nodes, of.multiplier(point));
+    let (multiplier, gap) = (u[m], u[m + 1]);
+    let at: [usize; 6] = std::array::from_fn(|i| 2 * nodes[i / 2] + i % 2);
+    let values: [f64; 6] = std::array::from_fn(|i| u[at[i]]);
+    let product = |row: &[f64]| -> f64 { (0..6).map(|i| row[i] * values[i]).sum() };
+    let by_multiplier = &entries[AT.force_multiplier];
+    let rows = entries[AT.force_u].chunks_exact(6).zip(by_multiplier);
+    for (&i, (row, by_multiplier)) in at.iter().zip(rows) {
+        out[i] += product(row) + by_multiplier * multiplier;
+    }
+    out[m] += product(&entries[AT.closure_u])
+        + entries[AT.closure_multiplier] * multiplier
+        + entries[AT.closure_gap] * gap;
+    out[m + 1] += product(&entries[AT.complementarity_u])
+        + entries[AT.complementarity_multiplier] * multiplier
+        + entries[AT.complementarity_gap] * gap;
 }
 
 impl Subdomain {

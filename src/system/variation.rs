@@ -13,7 +13,7 @@ use super::problem::Problem;
 use super::shape_slope::ShapeSlopes;
 use super::subdomain::{LocalContact, Subdomain};
 use crate::contact::{ContactAt, ContactLawSlope, ContactMotion, ContactSlope, FrictionState};
-use crate::element::Quad8Slope;
+use crate::element::{PointMotion, Quad8Slope};
 use crate::material::{MaterialSlope, PointState};
 use crate::mesh::SurfaceSide;
 use crate::plane::{PlaneTensor, dot, interpolate};
@@ -177,15 +177,18 @@ impl Variation {
     fn add_force_slopes(&self, step: &EvaluatedStep<'_>, history: &History, out: &mut [f64]) {
         let (of, held) = (step.of, [[0.0; 2]; 8]);
         let scale = 1.0 / of.problem.young_modulus;
-        let is_still = self.mesh.is_none() && self.material.is_zero();
         for (element, nodes) in of.connectivity.iter().enumerate() {
-            let states = history.element(element);
-            if is_still && states.iter().all(|state| *state == PointState::STILL) {
-                continue;
-            }
-            let moves = self.element(element);
+            let (states, moves) = (history.element(element), self.element(element));
             for (k, (at, before)) in step.points(element).iter().zip(states).enumerate() {
-                let motion = at.motion(k, &held, moves);
+                let yields = at.response.response().yields();
+                if moves.is_none() && *before == PointState::STILL && self.material.is_zero(yields)
+                {
+                    continue;
+                }
+                let motion = match moves {
+                    Some(_) => at.motion(k, &held, moves),
+                    None => PointMotion::STILL,
+                };
                 let slope = at
                     .response
                     .slope(&motion.deformation, before, &self.material);

@@ -46,6 +46,15 @@ pub struct PointMotion {
     volume: f64,
 }
 
+impl PointMotion {
+    /// Nothing moves.
+    pub const STILL: Self = Self {
+        deformation: [[0.0; 2]; 2],
+        velocity: [[0.0; 2]; 2],
+        volume: 0.0,
+    };
+}
+
 impl Quad8Slope {
     /// Of an element whose nodes move this way (mm per unit); `sides` are the elements with more and with less of the
     /// parameter, `width` of it apart.

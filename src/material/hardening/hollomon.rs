@@ -15,6 +15,7 @@ pub(super) static LAW: Declaration = Declaration {
             unit: "MPa",
             default: "194",
             range: STRESS,
+            is_exponent: false,
             meaning: "With -hardening hollomon: initial yield stress; the flow stress stays at it until K p^n exceeds it.",
         },
     ],
@@ -29,6 +30,7 @@ pub(super) const K: Constant = Constant {
     unit: "MPa",
     default: "550.4",
     range: STRESS,
+    is_exponent: false,
     meaning: "K of Hollomon's law: sigma = K p^n above -hollomon_elastic_limit with -hardening hollomon, where p is the \
               plastic strain; sigma = K eps^n with -hardening hollomon_total, where eps is the total logarithmic strain.",
 };
@@ -37,6 +39,7 @@ pub(super) const N: Constant = Constant {
     unit: "",
     default: "0.223",
     range: (Bound::Included(1e-3), Bound::Excluded(1.0)),
+    is_exponent: true,
     meaning: "n of Hollomon's law, with -hardening hollomon or hollomon_total.",
 };
 

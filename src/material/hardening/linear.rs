@@ -13,6 +13,7 @@ pub(super) static LAW: Declaration = Declaration {
             unit: "MPa",
             default: "194",
             range: STRESS,
+            is_exponent: false,
             meaning: "With -hardening linear, sigma = sigma0 + H p: sigma0, the initial yield stress.",
         },
         Constant {
@@ -20,6 +21,7 @@ pub(super) static LAW: Declaration = Declaration {
             unit: "MPa",
             default: "1800",
             range: (Bound::Included(0.0), Bound::Included(1e6)),
+            is_exponent: false,
             meaning: "With -hardening linear: H, the slope; 0 is perfect plasticity.",
         },
     ],

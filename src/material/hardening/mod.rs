@@ -78,6 +78,8 @@ pub struct Constant {
     pub default: &'static str,
     /// The values it can have.
     pub range: (Bound<f64>, Bound<f64>),
+    /// Whether it is the exponent of a strain, a factor on its logarithm.
+    pub is_exponent: bool,
     /// One sentence.
     pub meaning: &'static str,
 }

@@ -13,6 +13,7 @@ pub(super) static LAW: Declaration = Declaration {
             unit: "MPa",
             default: "550.4",
             range: STRESS,
+            is_exponent: false,
             meaning: "With -hardening swift, sigma = K (eps0 + p)^n: K.",
         },
         Constant {
@@ -20,6 +21,7 @@ pub(super) static LAW: Declaration = Declaration {
             unit: "",
             default: "9.31457e-3",
             range: (Bound::Included(1e-9), Bound::Included(10.0)),
+            is_exponent: false,
             meaning: "With -hardening swift: eps0, the strain that makes the initial yield stress K eps0^n.",
         },
         Constant {
@@ -27,6 +29,7 @@ pub(super) static LAW: Declaration = Declaration {
             unit: "",
             default: "0.223",
             range: (Bound::Included(1e-3), Bound::Included(1.0)),
+            is_exponent: true,
             meaning: "With -hardening swift: the exponent n.",
         },
     ],

@@ -15,6 +15,7 @@ pub(super) static LAW: Declaration = Declaration {
         unit: "",
         default: "1",
         range: (Bound::Excluded(0.0), Bound::Included(1e3)),
+        is_exponent: false,
         meaning: "With -hardening table: factor on the table's flow stresses at the same plastic strains.",
     }],
     build: None,

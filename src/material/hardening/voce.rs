@@ -13,6 +13,7 @@ pub(super) static LAW: Declaration = Declaration {
             unit: "MPa",
             default: "194",
             range: STRESS,
+            is_exponent: false,
             meaning: "With -hardening voce, sigma = sigma0 + Q (1 - exp(-b p)): sigma0, the initial yield stress.",
         },
         Constant {
@@ -20,6 +21,7 @@ pub(super) static LAW: Declaration = Declaration {
             unit: "MPa",
             default: "240",
             range: (Bound::Included(0.0), Bound::Included(1e6)),
+            is_exponent: false,
             meaning: "With -hardening voce: Q, by which the flow stress grows in all.",
         },
         Constant {
@@ -27,6 +29,7 @@ pub(super) static LAW: Declaration = Declaration {
             unit: "",
             default: "8.25",
             range: (Bound::Excluded(0.0), Bound::Included(1e6)),
+            is_exponent: false,
             meaning: "With -hardening voce: b, how fast it grows.",
         },
     ],

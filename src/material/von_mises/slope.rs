@@ -68,9 +68,9 @@ impl MaterialSlope {
         }
     }
 
-    /// Whether the parameter leaves the material as it is.
-    pub fn is_zero(&self) -> bool {
-        self.bulk == 0.0 && self.shear == 0.0 && self.laws.is_none()
+    /// Whether the parameter leaves the answer of a point as it is, where the point and its history stay.
+    pub fn is_zero(&self, yields: bool) -> bool {
+        self.bulk == 0.0 && self.shear == 0.0 && (self.laws.is_none() || !yields)
     }
 
     /// Derivative of the flow stress at a held plastic strain. It is a difference of the law itself, at one and the same
