@@ -143,13 +143,15 @@ def accessible(browser):
         PROBLEMS.append(text)
     # With the keyboard alone every control is reached, and shows that it is.
     wanted = set(browser.execute_script("return [...document.querySelectorAll('button, select, input, summary')].filter(e => e.getClientRects().length && e.type !== 'radio').map(e => e.id || e.tagName)"))
-    browser.execute_script("document.activeElement.blur(); window.scrollTo(0, 0)")
-    reached, unseen = [], set()
+    reached, unseen, left = [], set(), 0
     for _ in range(200):
         browser.switch_to.active_element.send_keys(Keys.TAB)
         at, name, outline = browser.execute_script("const e = document.activeElement; return [[...document.querySelectorAll('*')].indexOf(e), e.id || e.tagName, getComputedStyle(e).outlineStyle]")
-        if name == "BODY" or at in [seen for seen, _ in reached]:
+        left += name == "BODY"
+        if left > 2 or at in [seen for seen, _ in reached]:
             break
+        if name == "BODY":
+            continue
         reached.append((at, name))
         if outline == "none":
             unseen.add(name)
@@ -246,11 +248,12 @@ def take_pictures(browser, page, folder):
 def main():
     if sys.argv[1:] == ["--self-test"]:
         return self_test()
-    pictures = Path(sys.argv.pop(3)) if sys.argv[2:3] == ["--pictures"] and len(sys.argv) == 4 and sys.argv.pop(2) else None
-    if len(sys.argv) not in (2, 3) or sys.argv[1].startswith("-"):
+    words = sys.argv[1:]
+    pictures = Path(words[2]) if len(words) == 3 and words[1] == "--pictures" else None
+    if not pictures and len(words) not in (1, 2) or words[0].startswith("-"):
         print(__doc__)
-        return 0 if sys.argv[1:] in (["-h"], ["--help"]) else 2
-    folder = Path(sys.argv[1]).resolve()
+        return 0 if words in (["-h"], ["--help"]) else 2
+    folder = Path(words[0]).resolve()
     report = folder / "report.html"
     if not report.exists():
         report = folder / "comparison.html"
@@ -264,8 +267,8 @@ def main():
             browser.get(page)
             if report.name == "report.html":
                 says(browser, json.loads((folder / "summary.json").read_text()))
-            if len(sys.argv) == 3:
-                browser.save_screenshot(sys.argv[2])
+            if len(words) == 2:
+                browser.save_screenshot(words[1])
             if report.name == "report.html":
                 use(browser)
             accessible(browser)
