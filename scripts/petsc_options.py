@@ -6,7 +6,7 @@
 
 What was found is kept in target/petsc-options.json, and a run that was cut short goes on from there while the program is the same.
 The program is $SSNP155 or target/release/ssnp155. The options are those that the objects of a run list for each set-up below. What the
-program says of each (src/run/setup/known.rs) is compared with what a short run shows: an option that works has to change the results or
+program says of each (src/run/setup/known/) is compared with what a short run shows: an option that works has to change the results or
 the text at least in one set-up, one without effect may change nothing but the line that names it, and one that is refused ends with a
 sentence. Nothing may end by a signal, with a traceback, or be still for a minute. Ends with code 1 if an option does otherwise.
 """
@@ -30,16 +30,17 @@ KEPT = ROOT / "target/petsc-options.json"
 # Ten steps and three refused solves: some options matter only where a solve is refused.
 CASE = ("-sheet_nx 40 -sheet_ny 1 -stroke 0.2 -time_load 6.4 -unload_fraction 0 -report_strokes none -output_every 0 -checkpoint_minutes 0 "
         "-dt_initial 4 -dt_min 0.1 -newton_max_iterations 3").split()
-# Set-up: options, ranks. In this order, because an option that was seen to work is not tried again.
+# Set-up: options, ranks, and which options that had no effect before are tried again: those that its solvers may read. In this order,
+# because an option that was seen to work is not tried again.
 SETUPS = {
-    "default": ([], 1),
-    "petsc-lu": (["-pc_type", "lu"], 1),
-    "gmres": (["-pc_type", "bjacobi", "-sub_pc_type", "lu", "-ksp_type", "gmres"], 1),
-    "fastest": (["-options_file", str(ROOT / "inputs/fastest.opts")], 1),
-    "line search": (["-snes_linesearch_type", "l2"], 1),
-    "statics": (["-dynamics", "none"], 1),
-    "friction": (["-friction_coefficient", "0.1342"], 1),
-    "2 ranks": ([], 2),
+    "default": ([], 1, r"."),
+    "petsc-lu": (["-pc_type", "lu"], 1, r"^(mat|pc|ksp|snes_ksp)_"),
+    "gmres": (["-pc_type", "bjacobi", "-sub_pc_type", "lu", "-ksp_type", "gmres"], 1, r"^(sub_)?(mat|pc|ksp)_|snes_ksp_ew$"),
+    "fastest": (["-options_file", str(ROOT / "inputs/fastest.opts")], 1, r"^condensed_(mat|pc)_"),
+    "line search": (["-snes_linesearch_type", "l2"], 1, r"^snes_linesearch_"),
+    "statics": (["-dynamics", "none"], 1, r"^ts_"),
+    "friction": (["-friction_coefficient", "0.1342"], 1, r"^$"),
+    "2 ranks": ([], 2, r"^$"),
 }
 # Values of options whose line in the help does not say enough.
 VALUES = {
@@ -47,7 +48,9 @@ VALUES = {
     "ts_adapt_wnormtype": "infinity",
     "ts_adapt_safety": "0.5",
     "ts_adapt_reject_safety": "0.3",
-    "mat_mumps_icntl_20": "0",
+    "mat_mumps_icntl_20": "10",
+    "sub_pc_factor_mat_solver_type": "mumps",
+    "ksp_gmres_modifiedgramschmidt": "true",
     "ts_time_span": "0,1",
     "ts_monitor_frequency": "3",
     "ts_adapt_scale_solve_failed": "0.2",
@@ -92,8 +95,9 @@ def listed(text):
 def other_value(name, rest):
     """A value that an option does not have, by what its line in the help says."""
     bare = PREFIX.sub("", name)
-    if bare in VALUES:
-        return [VALUES[bare]]
+    for known in (name, bare):
+        if known in VALUES:
+            return [VALUES[known]]
     if re.match(r" (ascii|binary|draw|socket|saws)\[?", rest):
         return []
     choices, now = CHOICES.search(rest), NOW.search(rest)
@@ -136,7 +140,7 @@ class Base:
     VIEWS = "-ts_view -snes_view -ksp_view ::ascii_info_detail -condensed_ksp_view ::ascii_info_detail".split()
 
     def __init__(self, name, folder):
-        words, self.ranks = SETUPS[name]
+        words, self.ranks, _ = SETUPS[name]
         self.words = [*words, *self.VIEWS]
         self.folder = folder
         self.code, self.rows, self.said = outcome(self.words, self.ranks, folder)
@@ -169,7 +173,7 @@ class Base:
         if code not in (0, 1):
             return "works", f"code {code}", [*problems, f"code {code}: {flat[-200:]}"]
         if f"option {option} is not known" in flat:
-            problems.append("it has no row in src/run/setup/known.rs")
+            problems.append("it has no row in src/run/setup/known/")
         silent = re.search(rf"option {option} has no effect,? ?(.*?)(?= (warning|note): | done left)", flat)
         if silent:
             if rows != self.rows:
@@ -199,6 +203,11 @@ class Record:
         return any(program == self.program and not problems and (fate == "refused" or fate == "works" and what)
                    for fate, what, problems, program in self.found.get(name, {}).values())
 
+    def silent(self, name):
+        """Whether the program said wherever it was tried that the option has no effect."""
+        found = [fate for fate, _, _, program in self.found.get(name, {}).values() if program == self.program]
+        return bool(found) and set(found) == {"no effect"}
+
     def tried(self, name, setup):
         return self.found.get(name, {}).get(setup, [None] * 4)[3] == self.program
 
@@ -212,7 +221,8 @@ class Record:
             for setup, (_, _, problems, _) in seen.items():
                 if problems:
                     yield f"{setup}: -{name}: {'; '.join(problems)}"
-            if seen and all(fate == "works" and not what for fate, what, _, _ in seen.values()):
+            shown = any(fate == "refused" or fate == "works" and what for fate, what, _, _ in seen.values())
+            if not shown and any(fate == "works" for fate, _, _, _ in seen.values()):
                 yield f"-{name} is said to work, and nothing was seen to change"
 
 
@@ -231,6 +241,8 @@ def main():
                 again.add(name)
                 record.found.pop(name, None)
             if record.settled(name) or record.tried(name, setup):
+                continue
+            if record.silent(name) and not re.search(SETUPS[setup][2], name):
                 continue
             words = [f"-{name}", *other_value(name, rest)]
             fate, what, problems = base.tried(words)
@@ -270,9 +282,9 @@ def write_page(found):
             f"Every option that PETSc{' ' + version[1] if version else ''} lists with `-help` for the time stepper, the nonlinear and the linear solvers, the\n"
             "preconditioners and matrices of a run, and what becomes of it. `scripts/petsc_options.py` gave each another value in a short run and\n"
             "looked at what changed; the program says the same at the start of a run. With `cargo test` a test fails where `-help` lists an option\n"
-            "that has no row in `src/run/setup/known.rs`. An option of another version of PETSc that is not here is named by a note at the start.\n"
+            "that has no row in `src/run/setup/known/`. An option of another version of PETSc that is not here is named by a note at the start.\n"
             "Single values that are refused, such as `-ksp_type cg`, are in [hard-use.md](hard-use.md).\n\n"
-            "Set-ups: " + ", ".join(f"{name} (`{' '.join(words).replace(str(ROOT) + '/', '')}`)" if words else name for name, (words, _) in SETUPS.items()) + ".\n")
+            "Set-ups: " + ", ".join(f"{name} (`{' '.join(words).replace(str(ROOT) + '/', '')}`)" if words else name for name, (words, _, _) in SETUPS.items()) + ".\n")
     for fate in ["works", "works, else no effect", "no effect", "refused"]:
         rows = [(what, names) for (which, what), names in groups.items() if which == fate]
         if rows:

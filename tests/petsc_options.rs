@@ -66,7 +66,7 @@ fn what_becomes_of_every_listed_option_is_known() {
         .collect();
     assert!(
         unknown.is_empty(),
-        "no row in src/run/setup/known.rs: {unknown:?}; scripts/petsc_options.py finds out what they do"
+        "no row in src/run/setup/known/: {unknown:?}; scripts/petsc_options.py finds out what they do"
     );
     // The help is that of the objects in use: the solver of the condensed system and MUMPS are among them.
     for name in [
