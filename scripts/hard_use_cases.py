@@ -223,6 +223,11 @@ option("the right-hand side's Jacobian, tested", "-ts_rhs_jacobian_test_mult", 2
 option("monitors of fields", "-snes_monitor_fields", 2, f"{REFUSED}-snes_monitor_fields: it needs a grid")
 option("a graph without a display", "-ts_monitor_lg_timestep", 2, f"{REFUSED}-ts_monitor_lg_timestep: it draws", environment={"DISPLAY": ""})
 option("an error in place of a refused solve", "-snes_error_if_not_converged", 2, f"{REFUSED}-snes_error_if_not_converged: a solve that")
+AT_ZERO = "pc_factor_nonzeros_along_diagonal"
+option("rows in another order", f"-condensed_{AT_ZERO}", 2, f"{REFUSED}-condensed_{AT_ZERO}: PETSc ends by a signal with it", fast=True)
+option("rows in another order, of the whole system", f"-pc_type lu -{AT_ZERO}", 2, f"{REFUSED}-{AT_ZERO}: PETSc ends by a signal with it")
+option("rows in another order, by PETSc itself", f"-pc_type lu -pc_factor_mat_solver_type petsc -{AT_ZERO}",
+       says=f"-{AT_ZERO} matters only where an entry of the diagonal is zero")
 option("a Jacobian by differences", "-snes_fd", 2, f"{REFUSED}-snes_fd: differences cannot follow")
 option("a tolerance of a direct solve", "-ksp_rtol 1e-2", says="-ksp_rtol has no effect as the solve is direct")
 option("a parameter of another line search", "-snes_linesearch_damping 0.5", says="-snes_linesearch_damping has no effect on the program's own")

@@ -38,6 +38,7 @@ SETUPS = {
     "gmres": (["-pc_type", "bjacobi", "-sub_pc_type", "lu", "-ksp_type", "gmres"], 1, r"^(sub_)?(mat|pc|ksp)_|snes_ksp_ew$"),
     "fastest": (["-options_file", str(ROOT / "inputs/fastest.opts")], 1, r"^condensed_(mat|pc)_"),
     "line search": (["-snes_linesearch_type", "l2"], 1, r"^snes_linesearch_"),
+    "backtracking": (["-snes_linesearch_type", "bt"], 1, r"^snes_linesearch_"),
     "statics": (["-dynamics", "none"], 1, r"^ts_"),
     "friction": (["-friction_coefficient", "0.1342"], 1, r"^$"),
     "2 ranks": ([], 2, r"^$"),

@@ -85,6 +85,8 @@ fn an_option_of_each_fate_is_named_as_such() {
         ("snes_atol", "works"),
         ("condensed_mat_mumps_icntl_14", "works, by the solver"),
         ("ts_rtol", "no effect"),
+        ("snes_converged_reason_view_cancel", "no effect"),
+        ("pc_factor_nonzeros_along_diagonal", "works, by the solver"),
         ("snes_max_linear_solve_fail", "works, rarely"),
         ("ts_alpha_radius", "refused"),
         ("condensed_ksp_diagonal_scale", "refused"),

@@ -91,6 +91,10 @@ pub(super) const ROWS: &[Row] = &[
         Fate::Drawn,
     ),
     (&["snes_linesearch_type"], Fate::Works),
+    (
+        &["snes_linesearch_precheck_picard*"],
+        Fate::Rare("two steps of Newton's method in a row point nearly the same way"),
+    ),
     (&["snes_linesearch_*"], OF_LINE_SEARCH),
     (
         &[
