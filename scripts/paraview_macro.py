@@ -11,9 +11,11 @@ import sys
 
 from paraview import simple
 
-# Distance between the tools and what is drawn of them beside the sheet, mm, and the size of a contact point.
-MARGIN, POINT = 4.0, 0.5
+# Distance between the sheet and the edge of the picture, mm, the size of a contact point, and the share of the height for the scales.
+MARGIN, POINT, SCALES = 4.0, 0.6, 0.14
 INK = [0.1, 0.13, 0.17]
+# From light to strong: the tools are dark, and so is the sheet where it stays elastic.
+PRESSURE = [0.0, 1.0, 0.85, 0.35, 0.5, 0.95, 0.45, 0.15, 1.0, 0.75, 0.0, 0.15]
 SHEET, TOOLS, CONTACT = "fields.vtkhdf", "tools.vtkhdf", "contact.vtkhdf"
 
 
@@ -36,12 +38,12 @@ def folder_of_selection():
     return os.path.dirname(str(source.FileName).strip("[]'"))
 
 
-def deepest(reader):
-    """The time at which the sheet is bent most: the last before the punch turns."""
+def deepest(tools):
+    """The last time before the punch turns: where it is lowest."""
     lowest, at = 0.0, 0.0
-    for time in reader.TimestepValues or [0.0]:
-        reader.UpdatePipeline(time)
-        low = reader.GetDataInformation().GetPointDataInformation().GetArrayInformation("displacement").GetComponentRange(1)[0]
+    for time in tools.TimestepValues or [0.0]:
+        tools.UpdatePipeline(time)
+        low = tools.GetDataInformation().GetPointDataInformation().GetArrayInformation("displacement").GetComponentRange(1)[0]
         if low < lowest:
             lowest, at = low, time
     return at
@@ -60,9 +62,10 @@ def show(folder):
     simple.ColorBy(shown, ("POINTS", "equivalent_plastic_strain"))
     strain = simple.GetColorTransferFunction("equivalent_plastic_strain")
     strain.ApplyPreset("Viridis (matplotlib)", True)
-    time = deepest(sheet.Input)
 
-    tools = simple.Show(opened(folder, TOOLS), view)
+    outlines = opened(folder, TOOLS)
+    time = deepest(outlines.Input)
+    tools = simple.Show(outlines, view)
     tools.ColorArrayName = ["POINTS", ""]
     tools.AmbientColor = tools.DiffuseColor = INK
     tools.LineWidth = 2.0
@@ -75,10 +78,14 @@ def show(folder):
     dots.ScaleFactor, dots.GlyphMode = POINT, "All Points"
     marked = simple.Show(dots, view)
     simple.ColorBy(marked, ("POINTS", "contact_pressure"))
-    simple.GetColorTransferFunction("contact_pressure").ApplyPreset("Inferno (matplotlib)", True)
+    pressure = simple.GetColorTransferFunction("contact_pressure")
+    pressure.RGBPoints, pressure.ColorSpace = PRESSURE, "RGB"
 
     view.ViewTime = time
     simple.GetAnimationScene().AnimationTime = time
+    # Ranges of colours and what is framed are those of the time that was asked for last.
+    for filtered in [sheet, dots]:
+        filtered.UpdatePipeline(time)
     for coloured, name, place in [(shown, "equivalent plastic strain", 0.05), (marked, "contact pressure, MPa", 0.55)]:
         coloured.RescaleTransferFunctionToDataRange(False, True)
         coloured.SetScalarBarVisibility(view, True)
@@ -86,6 +93,7 @@ def show(folder):
         bar.Title, bar.ComponentTitle = name, ""
         bar.TitleColor = bar.LabelColor = INK
         bar.TitleFontSize, bar.LabelFontSize = 14, 12
+        bar.AutomaticLabelFormat, bar.LabelFormat, bar.RangeLabelFormat = 0, "%g", "%.3g"
         bar.Orientation, bar.WindowLocation = "Horizontal", "Any Location"
         bar.Position, bar.ScalarBarLength = [place, 0.03], 0.35
     frame(view, sheet)
@@ -94,13 +102,17 @@ def show(folder):
 
 def frame(view, sheet):
     """Looks along the width at the sheet, whatever the tools do beyond it."""
+    # The first picture of a view chooses its own frame.
+    simple.Render(view)
     left, right, low, high = sheet.GetDataInformation().GetBounds()[:4]
     view.InteractionMode = "2D"
-    view.CameraFocalPoint = [(left + right) / 2, (low + high) / 2, 0.0]
-    view.CameraPosition = [(left + right) / 2, (low + high) / 2, 1000.0]
+    half = (max(high - low, (right - left) * 0.75) / 2 + MARGIN) / (1 - SCALES)
+    middle = [(left + right) / 2, (low + high) / 2 - SCALES * half]
+    view.CameraFocalPoint = [*middle, 0.0]
+    view.CameraPosition = [*middle, 1000.0]
     view.CameraViewUp = [0.0, 1.0, 0.0]
     view.CameraParallelProjection = 1
-    view.CameraParallelScale = max(high - low, (right - left) * 0.75) / 2 + MARGIN
+    view.CameraParallelScale = half
     simple.Render(view)
 
 

@@ -2,14 +2,17 @@
 """Gives every option of PETSc that -help lists another value and looks at what that changes.
 
     scripts/petsc_options.py            all; writes docs/petsc-options.md  (needs: cargo build --release)
-    scripts/petsc_options.py WORD       those with this word in their name, and writes nothing
+    scripts/petsc_options.py WORD       those with this word in their name, again; the page follows if all others were tried
 
+What was found is kept in target/petsc-options.json, and a run that was cut short goes on from there while the program is the same.
 The program is $SSNP155 or target/release/ssnp155. The options are those that the objects of a run list for each set-up below. What the
-program says of each (src/run/setup/known.rs) is compared with what a short run shows: an option that works has to change the results or
+program says of each (src/run/setup/known/) is compared with what a short run shows: an option that works has to change the results or
 the text at least in one set-up, one without effect may change nothing but the line that names it, and one that is refused ends with a
-sentence. Nothing may end by a signal or with a traceback. Ends with code 1 if an option does otherwise.
+sentence. Nothing may end by a signal, with a traceback, or be still for a minute. Ends with code 1 if an option does otherwise.
 """
 import collections
+import hashlib
+import json
 import os
 import pathlib
 import re
@@ -18,22 +21,27 @@ import subprocess
 import sys
 import tempfile
 
+from watched import watched
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAM = os.environ.get("SSNP155", str(ROOT / "target/release/ssnp155"))
 PAGE = ROOT / "docs/petsc-options.md"
+KEPT = ROOT / "target/petsc-options.json"
 # Ten steps and three refused solves: some options matter only where a solve is refused.
 CASE = ("-sheet_nx 40 -sheet_ny 1 -stroke 0.2 -time_load 6.4 -unload_fraction 0 -report_strokes none -output_every 0 -checkpoint_minutes 0 "
         "-dt_initial 4 -dt_min 0.1 -newton_max_iterations 3").split()
-# Set-up: options, ranks. In this order, because an option that was seen to work is not tried again.
+# Set-up: options, ranks, and which options that had no effect before are tried again: those that its solvers may read. In this order,
+# because an option that was seen to work is not tried again.
 SETUPS = {
-    "default": ([], 1),
-    "petsc-lu": (["-pc_type", "lu"], 1),
-    "gmres": (["-pc_type", "bjacobi", "-sub_pc_type", "lu", "-ksp_type", "gmres"], 1),
-    "fastest": (["-options_file", str(ROOT / "inputs/fastest.opts")], 1),
-    "line search": (["-snes_linesearch_type", "l2"], 1),
-    "statics": (["-dynamics", "none"], 1),
-    "friction": (["-friction_coefficient", "0.1342"], 1),
-    "2 ranks": ([], 2),
+    "default": ([], 1, r"."),
+    "petsc-lu": (["-pc_type", "lu"], 1, r"^(mat|pc|ksp|snes_ksp)_"),
+    "gmres": (["-pc_type", "bjacobi", "-sub_pc_type", "lu", "-ksp_type", "gmres"], 1, r"^(sub_)?(mat|pc|ksp)_|snes_ksp_ew$"),
+    "fastest": (["-options_file", str(ROOT / "inputs/fastest.opts")], 1, r"^condensed_(mat|pc)_"),
+    "line search": (["-snes_linesearch_type", "l2"], 1, r"^snes_linesearch_"),
+    "backtracking": (["-snes_linesearch_type", "bt"], 1, r"^snes_linesearch_"),
+    "statics": (["-dynamics", "none"], 1, r"^ts_"),
+    "friction": (["-friction_coefficient", "0.1342"], 1, r"^$"),
+    "2 ranks": ([], 2, r"^$"),
 }
 # Values of options whose line in the help does not say enough.
 VALUES = {
@@ -41,7 +49,9 @@ VALUES = {
     "ts_adapt_wnormtype": "infinity",
     "ts_adapt_safety": "0.5",
     "ts_adapt_reject_safety": "0.3",
-    "mat_mumps_icntl_20": "0",
+    "mat_mumps_icntl_20": "10",
+    "sub_pc_factor_mat_solver_type": "mumps",
+    "ksp_gmres_modifiedgramschmidt": "true",
     "ts_time_span": "0,1",
     "ts_monitor_frequency": "3",
     "ts_adapt_scale_solve_failed": "0.2",
@@ -52,6 +62,9 @@ VALUES = {
     "ksp_fischer_guess": "1,10",
     "ksp_guess_type": "fischer",
     "pc_type": "none",
+    "ksp_type": "gmres",
+    "snes_type": "vinewtonssls",
+    "snes_linesearch_type": "l2",
     "pc_factor_mat_solver_type": "petsc",
     "pc_factor_mat_ordering_type": "rcm",
 }
@@ -61,18 +74,12 @@ PREFIX = re.compile(r"^(condensed_|sub_|redundant_|all_)+")
 NOW = re.compile(r"<(?:now )?(?P<now>[^ >:]*)")
 CHOICES = re.compile(r"\((?:choose )?one of\)? (?P<words>[^()]*)")
 UGLY = ["panicked", "PETSC ERROR", "Caught signal", "Segmentation", "core dumped", "Traceback", "MPI_ABORT"]
-PATIENCE = 60.0
 
 
 def run(words, ranks, folder):
     """Code and text; the code is a word where the program does not end by itself."""
     start = [PROGRAM] if ranks == 1 else ["mpirun", "--oversubscribe", "-n", str(ranks), PROGRAM]
-    try:
-        ended = subprocess.run([*start, *CASE, *words, "-output_dir", str(folder)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                               timeout=PATIENCE, cwd=folder.parent, stdin=subprocess.DEVNULL)
-        return ended.returncode, ended.stdout.decode(errors="replace")
-    except subprocess.TimeoutExpired as stopped:
-        return "no end", (stopped.stdout or b"").decode(errors="replace")
+    return watched([*start, *CASE, *words, "-output_dir", str(folder)], folder.parent)
 
 
 def listed(text):
@@ -89,8 +96,9 @@ def listed(text):
 def other_value(name, rest):
     """A value that an option does not have, by what its line in the help says."""
     bare = PREFIX.sub("", name)
-    if bare in VALUES:
-        return [VALUES[bare]]
+    for known in (name, bare):
+        if known in VALUES:
+            return [VALUES[known]]
     if re.match(r" (ascii|binary|draw|socket|saws)\[?", rest):
         return []
     choices, now = CHOICES.search(rest), NOW.search(rest)
@@ -133,7 +141,7 @@ class Base:
     VIEWS = "-ts_view -snes_view -ksp_view ::ascii_info_detail -condensed_ksp_view ::ascii_info_detail".split()
 
     def __init__(self, name, folder):
-        words, self.ranks = SETUPS[name]
+        words, self.ranks, _ = SETUPS[name]
         self.words = [*words, *self.VIEWS]
         self.folder = folder
         self.code, self.rows, self.said = outcome(self.words, self.ranks, folder)
@@ -155,14 +163,18 @@ class Base:
             return "works", "files", []
         flat = " ".join(said.split())
         problems = [word for word in UGLY if word in said]
-        if code == 2 and f"ssnp155: option {option}" in flat:
-            return "refused", re.search(rf"ssnp155: option {option}[^:]*: (.*?); leave it out", flat + "; leave it out")[1], problems
-        if code == 2 and "ssnp155: PETSc error" in flat:
-            return "refused", "by PETSc: " + re.search(r"PETSc error \d+: (.*?); if a value", flat)[1], problems
+        refusal = re.search(rf"ssnp155: option {option}\b[^:]*: (.*?)(; leave it out, and (.*)|$)", flat)
+        if code == 2 and refusal:
+            if not refusal[3]:
+                problems.append("it is refused, and nothing is said to do instead")
+            return "refused", refusal[1], problems
+        by_petsc = re.search(r"ssnp155: PETSc error \d+: (.*?)(; if a value|$)", flat)
+        if code == 2 and by_petsc:
+            return "refused", "by PETSc: " + by_petsc[1], problems
         if code not in (0, 1):
             return "works", f"code {code}", [*problems, f"code {code}: {flat[-200:]}"]
         if f"option {option} is not known" in flat:
-            problems.append("it has no row in src/run/setup/known.rs")
+            problems.append("it has no row in src/run/setup/known/")
         silent = re.search(rf"option {option} has no effect,? ?(.*?)(?= (warning|note): | done left)", flat)
         if silent:
             if rows != self.rows:
@@ -176,30 +188,75 @@ class Base:
         return "works", "text" if said != self.said else "", problems
 
 
+class Record:
+    """What was found of each option in each set-up, by which program; kept in a file."""
+
+    def __init__(self):
+        self.program = hashlib.sha256(pathlib.Path(PROGRAM).read_bytes()).hexdigest()
+        self.found = json.loads(KEPT.read_text()) if KEPT.is_file() else {}
+
+    def fates(self, name):
+        """Fate and what was seen, by set-up."""
+        return {setup: (fate, what) for setup, (fate, what, problems, program) in self.found.get(name, {}).items()}
+
+    def settled(self, name):
+        """Whether the option was refused or seen to work, by this program."""
+        return any(program == self.program and not problems and (fate == "refused" or fate == "works" and what)
+                   for fate, what, problems, program in self.found.get(name, {}).values())
+
+    def silent(self, name):
+        """Whether the program said wherever it was tried that the option has no effect."""
+        found = [fate for fate, _, _, program in self.found.get(name, {}).values() if program == self.program]
+        return bool(found) and set(found) == {"no effect"}
+
+    def tried(self, name, setup):
+        return self.found.get(name, {}).get(setup, [None] * 4)[3] == self.program
+
+    def keep(self, name, setup, fate, what, problems):
+        self.found.setdefault(name, {})[setup] = [fate, what, problems, self.program]
+        KEPT.write_text(json.dumps(self.found, indent=1))
+
+    def problems(self):
+        """What is wrong, a line each."""
+        for name, seen in self.found.items():
+            for setup, (_, _, problems, _) in seen.items():
+                if problems:
+                    yield f"{setup}: -{name}: {'; '.join(problems)}"
+            shown = any(fate == "refused" or fate == "works" and what for fate, what, _, _ in seen.values())
+            if not shown and any(fate == "works" for fate, _, _, _ in seen.values()):
+                yield f"-{name} is said to work, and nothing was seen to change"
+
+
 def main():
     chosen = sys.argv[1] if len(sys.argv) > 1 else ""
     work = pathlib.Path(tempfile.mkdtemp(prefix="ssnp155-petsc-options-"))
-    found, wrong = {}, 0
+    record, again = Record(), set()
+    names = collections.OrderedDict()
     for setup in SETUPS:
         base = Base(setup, work / "results")
         for name, rest in base.listed().items():
-            seen = found.setdefault(name, {})
-            if chosen not in name or any(fate == "refused" or fate == "works" and what for fate, what in seen.values()):
+            names[name] = None
+            if chosen not in name:
+                continue
+            if chosen and name not in again:
+                again.add(name)
+                record.found.pop(name, None)
+            if record.settled(name) or record.tried(name, setup):
+                continue
+            if record.silent(name) and not re.search(SETUPS[setup][2], name):
                 continue
             words = [f"-{name}", *other_value(name, rest)]
             fate, what, problems = base.tried(words)
-            if "2 ranks" == setup and seen and not problems and fate == "no effect":
-                continue
-            seen[setup] = (fate, what)
-            wrong += bool(problems)
+            record.keep(name, setup, fate, what, problems)
             print(f"{'WRONG' if problems else 'good '} {setup:12} {' '.join(words):50} {fate}: {what} {'; '.join(problems)}", flush=True)
-    for name, seen in found.items():
-        if seen and all(fate == "works" and not what for fate, what in seen.values()):
-            wrong += 1
-            print(f"WRONG -{name} is said to work, and nothing was seen to change")
-    print(f"{len(found)} options, {wrong} not as they have to be")
-    if not chosen and not wrong:
-        write_page(found)
+    shutil.rmtree(work, ignore_errors=True)
+    wrong = list(record.problems())
+    for line in wrong:
+        print(f"WRONG {line}")
+    untried = [name for name in names if name not in record.found]
+    print(f"{len(names)} options, {len(wrong)} not as they have to be, {len(untried)} not tried")
+    if not wrong and not untried:
+        write_page({name: record.fates(name) for name in names})
     return 1 if wrong else 0
 
 
@@ -210,10 +267,8 @@ def write_page(found):
     groups = collections.OrderedDict()
     for name, seen in found.items():
         refused = next((what for fate, what in seen.values() if fate == "refused"), None)
-        works = next(((setup, what) for setup, (fate, what) in seen.items() if fate == "works"), None)
+        works = next(((setup, what) for setup, (fate, what) in seen.items() if fate == "works" and what), None)
         silent = collections.OrderedDict((what, None) for fate, what in seen.values() if fate == "no effect")
-        if not seen:
-            continue
         if refused:
             cells = "refused", refused
         elif works:
@@ -228,16 +283,14 @@ def write_page(found):
             f"Every option that PETSc{' ' + version[1] if version else ''} lists with `-help` for the time stepper, the nonlinear and the linear solvers, the\n"
             "preconditioners and matrices of a run, and what becomes of it. `scripts/petsc_options.py` gave each another value in a short run and\n"
             "looked at what changed; the program says the same at the start of a run. With `cargo test` a test fails where `-help` lists an option\n"
-            "that has no row in `src/run/setup/known.rs`. An option of another version of PETSc that is not here is named by a note at the start.\n\n"
-            "Set-ups: " + ", ".join(f"{name} (`{' '.join(words).replace(str(ROOT) + '/', '')}`)" if words else name for name, (words, _) in SETUPS.items()) + ".\n")
+            "that has no row in `src/run/setup/known/`. An option of another version of PETSc that is not here is named by a note at the start.\n"
+            "Single values that are refused, such as `-ksp_type cg`, are in [hard-use.md](hard-use.md).\n\n"
+            "Set-ups: " + ", ".join(f"{name} (`{' '.join(words).replace(str(ROOT) + '/', '')}`)" if words else name for name, (words, _, _) in SETUPS.items()) + ".\n")
     for fate in ["works", "works, else no effect", "no effect", "refused"]:
         rows = [(what, names) for (which, what), names in groups.items() if which == fate]
         if rows:
             text += f"\n## {fate[0].upper()}{fate[1:]}\n\n| options | {'seen' if fate.startswith('works') else 'why'} |\n|---|---|\n"
             text += "".join(f"| {' '.join(f'`-{name}`' for name in names)} | {what} |\n" for what, names in rows)
-    untried = [f"`-{name}`" for name, seen in found.items() if not seen]
-    if untried:
-        text += "\n## Listed, and not tried yet\n\n" + " ".join(untried) + "\n"
     PAGE.write_text(text)
 
 

@@ -33,6 +33,7 @@ ends_with() {
     "${CARGO_TARGET_DIR:-target}/release/ssnp155" "$@" >/dev/null || code=$?
     [ "$code" -eq "$wanted" ] || { echo "test: code $code and not $wanted: ssnp155 $*" >&2; exit 1; }
 }
+.venv/bin/python -B scripts/check_report.py --self-test
 .venv/bin/python scripts/check_report.py results
 ends_with 1 -sheet_nx 40 -sheet_ny 2 -newton_max_iterations 3 -dt_min 0.1 -overwrite -output_dir results/failed
 .venv/bin/python scripts/check_report.py results/failed

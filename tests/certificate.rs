@@ -72,9 +72,34 @@ fn options_that_loosen_what_is_solved_never_end_with_every_verdict_holding() {
         ),
         ("iterations", "-snes_max_it 1"),
         ("search", "-snes_linesearch_type bt"),
+        ("own-loosest", "-newton_tolerance 1e-3"),
+        ("both", "-snes_rtol 1e-2 -snes_lag_jacobian 3"),
+        (
+            "damped",
+            "-snes_linesearch_type basic -snes_linesearch_damping 0.5",
+        ),
+        ("bounds", "-snes_vi_zero_tolerance 1e-2"),
+        ("gmres", "-pc_type ilu -ksp_type gmres -ksp_rtol 1e-1"),
+        ("bcgs", "-pc_type ilu -ksp_type bcgs -ksp_rtol 1e-1"),
+        (
+            "few",
+            "-pc_type ilu -ksp_type bcgs -ksp_max_it 3 -ksp_converged_maxits",
+        ),
+        (
+            "condensed",
+            "-condensed_pc_type none -condensed_ksp_type gmres -condensed_ksp_rtol 1e-1",
+        ),
     ] {
         let (code, good) = loosened(name, more);
         assert_eq!((code, good), (Some(1), false), "{more}");
+    }
+    // What would change the equations is refused before the run.
+    for (name, more) in [
+        ("beyond", "-newton_tolerance 1e-2"),
+        ("radius", "-ts_alpha_radius 0.9"),
+        ("no-equations", "-ts_alpha_beta 0.5"),
+    ] {
+        assert_eq!(loosened(name, more), (Some(2), false), "{more}");
     }
     // What changes the way and not the solution keeps its good end.
     for (name, more) in [
@@ -83,7 +108,14 @@ fn options_that_loosen_what_is_solved_never_end_with_every_verdict_holding() {
         // Without a test of convergence all twenty iterations are done, which leave less than the tolerance.
         ("untested", "-snes_convergence_test skip"),
         ("l2", "-snes_linesearch_type l2"),
+        ("cp", "-snes_linesearch_type cp"),
         ("lu", "-pc_type lu"),
+        // Two iterations a solve: fourteen short steps, each solved.
+        ("two", "-snes_max_it 2"),
+        (
+            "exact",
+            "-pc_type bjacobi -sub_pc_type lu -ksp_type gmres -ksp_rtol 1e-1",
+        ),
     ] {
         assert_eq!(loosened(name, more), (Some(0), true), "{more}");
     }

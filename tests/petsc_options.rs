@@ -66,7 +66,7 @@ fn what_becomes_of_every_listed_option_is_known() {
         .collect();
     assert!(
         unknown.is_empty(),
-        "no row in src/run/setup/known.rs: {unknown:?}; scripts/petsc_options.py finds out what they do"
+        "no row in src/run/setup/known/: {unknown:?}; scripts/petsc_options.py finds out what they do"
     );
     // The help is that of the objects in use: the solver of the condensed system and MUMPS are among them.
     for name in [
@@ -85,6 +85,8 @@ fn an_option_of_each_fate_is_named_as_such() {
         ("snes_atol", "works"),
         ("condensed_mat_mumps_icntl_14", "works, by the solver"),
         ("ts_rtol", "no effect"),
+        ("snes_converged_reason_view_cancel", "no effect"),
+        ("pc_factor_nonzeros_along_diagonal", "works, by the solver"),
         ("snes_max_linear_solve_fail", "works, rarely"),
         ("ts_alpha_radius", "refused"),
         ("condensed_ksp_diagonal_scale", "refused"),

@@ -83,6 +83,11 @@ pub(super) fn refuse() -> Result<(), RunError> {
     for (option, given) in of_petsc()? {
         let refusal = match fate(&option) {
             Some(Fate::Refused(refusal)) => refusal,
+            Some(Fate::RefusedWhile(while_, refusal, _))
+                if !left_alone(&option)? && holds(while_, &option)? =>
+            {
+                refusal
+            }
             Some(Fate::Drawn) if !has_display() => NO_DISPLAY,
             _ => continue,
         };
@@ -127,7 +132,9 @@ pub(in crate::run) fn report(case: &Case) -> petsc::Result<String> {
                 "is not known to this program: look whether it does what you want".to_owned(),
             )),
             Some(Fate::NoEffect(why)) => Some(("warning", format!("has no effect, {why}"))),
-            Some(Fate::Unless(While::OtherPackage, _)) if holds(While::OwnSolve, &option)? => {
+            Some(Fate::Unless(While::OtherPackage, _) | Fate::RefusedWhile(..))
+                if left_alone(&option)? =>
+            {
                 Some((
                     "warning",
                     format!("has no effect {}", in_words(While::OwnSolve, "", &option)),
@@ -139,7 +146,9 @@ pub(in crate::run) fn report(case: &Case) -> petsc::Result<String> {
                     format!("has no effect {}", in_words(while_, why, &option)),
                 )
             }),
-            Some(Fate::Rare(what)) => Some(("note", format!("matters only where {what}"))),
+            Some(Fate::Rare(what) | Fate::RefusedWhile(_, _, what)) => {
+                Some(("note", format!("matters only where {what}")))
+            }
             Some(Fate::Works | Fate::Drawn | Fate::Refused(_)) => None,
         };
         if let Some((kind, said)) = said {
@@ -158,6 +167,11 @@ fn in_words(while_: While, why: &str, option: &str) -> String {
     }
 }
 
+/// Whether no solver reads the option, as the linear solve is the program's own.
+fn left_alone(option: &str) -> petsc::Result<bool> {
+    holds(While::OwnSolve, option)
+}
+
 /// Whether what keeps an option from having an effect is the case.
 fn holds(while_: While, option: &str) -> petsc::Result<bool> {
     let (of, _) = SolveOf::split(option);
@@ -172,6 +186,7 @@ fn holds(while_: While, option: &str) -> petsc::Result<bool> {
             }
         },
         While::OwnLineSearch => value("snes_linesearch_type")?.is_none(),
+        While::NotCondensed => of != SolveOf::Condensed,
         While::OtherPackage => other_package(option)?,
         While::Without(other) => value(other)?.is_none(),
     })
@@ -200,7 +215,7 @@ pub fn fate_of_petsc_option(name: &str) -> Option<&'static str> {
         Fate::Works | Fate::Drawn => "works",
         Fate::Rare(_) => "works, rarely",
         Fate::NoEffect(_) => "no effect",
-        Fate::Unless(..) => "works, by the solver",
+        Fate::Unless(..) | Fate::RefusedWhile(..) => "works, by the solver",
         Fate::Refused(_) => "refused",
     })
 }

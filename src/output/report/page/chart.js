@@ -31,7 +31,10 @@ class Chart {
     let [low, high] = [Infinity, -Infinity];
     for (const s of this.options.series) for (const v of s[axis]) if (v !== null && isFinite(v)) { low = Math.min(low, v); high = Math.max(high, v); }
     if (low > high) return [0, 1];
-    if (axis === "y" && this.options.log) return [10 ** (Math.floor(Math.log10(low) * 2) / 2), 10 ** (Math.ceil(Math.log10(high) * 2) / 2)];
+    if (axis === "y" && this.options.log) {
+      const below = Math.floor(Math.log10(low) * 2) / 2, above = Math.ceil(Math.log10(high) * 2) / 2, flat = above > below ? 0 : 0.5;
+      return [10 ** (below - flat), 10 ** (above + flat)];
+    }
     if (axis === "y") {
       low = Math.min(low, 0);
       if (low > -0.02 * high) low = Math.min(low, 0);

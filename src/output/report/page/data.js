@@ -17,8 +17,8 @@ const states = (() => {
     elements: new Uint32Array(bytes(s.elements)),
     positions: new Uint16Array(bytes(s.positions)),
     fields: {
-      strain: { values: new Uint16Array(bytes(s.strain)), top: s.strain_max, name: "equivalent plastic strain", unit: "" },
-      stress: { values: new Uint16Array(bytes(s.stress)), top: s.stress_max, name: "von Mises stress", unit: "MPa" },
+      strain: { values: new Uint16Array(bytes(s.strain)), top: s.strain_max, scale: Math.max(s.strain_max, 1e-4), name: "equivalent plastic strain", unit: "" },
+      stress: { values: new Uint16Array(bytes(s.stress)), top: s.stress_max, scale: Math.max(s.stress_max, 1), name: "von Mises stress", unit: "MPa" },
     },
     contact: { along: c.along, upper: c.upper, starts, points: new Uint32Array(bytes(c.points)), values: new Float32Array(bytes(c.values)), status: c.status },
   };

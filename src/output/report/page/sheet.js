@@ -64,7 +64,7 @@ function scene(view, box, near) {
   };
   tool(outlines.die, 0, -FAR, tone("die")); tool(outlines.punch, down, 2 * FAR, tone("punch"));
   c.strokeStyle = tone("axis"); c.setLineDash([6, 4]); c.lineWidth = 1; c.beginPath(); c.moveTo(X(0), 0); c.lineTo(X(0), height); c.stroke(); c.setLineDash([]);
-  const top = states.fields[look.field].top, n = states.corners, list = states.elements;
+  const top = states.fields[look.field].scale, n = states.corners, list = states.elements;
   const size = k * model.half_length / model.elements[0], edges = size > 9, pieces = edges ? Math.min(6, Math.max(1, Math.round(size / 10))) : 1;
   for (const side of [1, -1]) for (let e = 0; e < list.length; e += n) {
     const corner = []; let value = 0, out = true;
@@ -177,12 +177,13 @@ function drawSheet(printing) {
 
 function colorBar(printing) {
   const canvas = document.getElementById("scale"), { c, width } = prepare(canvas, 50, printing ? 700 : 0), f = states.fields[look.field];
-  const left = 2, right = Math.min(width - 2, 560), X = v => left + v / f.top * (right - left);
+  const left = 2, right = Math.min(width - 2, 560), X = v => left + v / f.scale * (right - left);
   for (let k = 0; k < 256; k++) { c.fillStyle = COLORS[k]; c.fillRect(left + k / 256 * (right - left), 0, (right - left) / 256 + 0.7, 13); }
   c.fillStyle = tone("soft"); c.strokeStyle = tone("faint"); c.font = "12px sans-serif"; c.textAlign = "center";
-  for (const v of ticks(0, f.top, 7)) { c.beginPath(); c.moveTo(X(v), 13); c.lineTo(X(v), 18); c.stroke(); c.textAlign = v === 0 ? "left" : X(v) > right - 14 ? "right" : "center"; c.fillText(show(v), X(v), 31); }
+  for (const v of ticks(0, f.scale, width < 480 ? 4 : 7)) { c.beginPath(); c.moveTo(X(v), 13); c.lineTo(X(v), 18); c.stroke(); c.textAlign = v === 0 ? "left" : X(v) > right - 14 ? "right" : "center"; c.fillText(show(v), X(v), 31); }
   c.textAlign = "left"; c.fillStyle = tone("ink"); c.font = "13px sans-serif";
   let most = 0; for (let n = 0; n < states.nodes; n++) most = Math.max(most, valueAt(look.state, n));
+  if (most < 1e-4 * f.scale) most = 0;
   if (width > right + 250) c.fillText(`${f.name}${f.unit ? `, ${f.unit}` : ""}; here at most ${show(most, 3)}`, right + 16, 11);
   else c.fillText(`${f.name}${f.unit ? `, ${f.unit}` : ""}; here at most ${show(most, 3)}`, left, 46);
 }

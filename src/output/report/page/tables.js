@@ -114,7 +114,7 @@ function tiles() {
   const free = Object.entries(angles).filter(([n]) => n.startsWith("tools vanish"));
   if (free.length) add(`${fixed(free[0][1], 2)}°`, `angle, ${free[0][0]}`);
   const strain = data.states.strain_max;
-  add(`${show(100 * strain, 3)} %`, "largest plastic strain shown");
+  add(`${show(strain < 1e-8 ? 0 : 100 * strain, 3)} %`, "largest plastic strain shown");
   add(summary.counts.steps, `steps, ${summary.counts.refused_solves} solves refused`);
   add(summary.counts.newton_iterations, "Newton iterations");
   add(`${show(summary.timing.wall_s, 3)} s`, `on ${summary.provenance.mpi_ranks} rank${summary.provenance.mpi_ranks > 1 ? "s" : ""}`);
