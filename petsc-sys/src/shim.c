@@ -1,5 +1,51 @@
 #include "shim.h"
 
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+/* What cannot be written goes to nothing from here on: what is left in the buffer, too. */
+static void silence(FILE *screen)
+{
+  const int nowhere = open("/dev/null", O_WRONLY);
+  if (nowhere >= 0) {
+    dup2(nowhere, fileno(screen));
+    close(nowhere);
+  }
+  clearerr(screen);
+  fflush(screen);
+}
+
+static PetscErrorCode (*print_to_file)(FILE *, const char[], va_list);
+
+/* Since 3.20 PETSc fails where the screen takes no text, as with a pipe whose reader has left. That costs no run here; a file
+   that takes no text is an error still. */
+static PetscErrorCode print(FILE *file, const char format[], va_list arguments)
+{
+  char usual[8192], *text = usual;
+  size_t length = 0;
+  va_list again;
+  PetscErrorCode error;
+
+  if (file != stdout && file != stderr) return print_to_file(file, format, arguments);
+  va_copy(again, arguments);
+  error = PetscVSNPrintf(usual, sizeof usual, format, &length, again);
+  va_end(again);
+  if (!error && length > sizeof usual && (text = malloc(length + 1)))
+    error = PetscVSNPrintf(text, length + 1, format, NULL, arguments);
+  if (!error && (fputs(text ? text : usual, file) < 0 || fflush(file))) silence(file);
+  if (text != usual) free(text);
+  return error;
+}
+
+void petsc_rs_forgive_screen(void)
+{
+  if (PetscVFPrintf == print) return;
+  print_to_file = PetscVFPrintf;
+  PetscVFPrintf = print;
+}
+
 PetscErrorCode petsc_rs_container_get(PetscContainer container, void **content)
 {
   return PetscContainerGetPointer(container, content);

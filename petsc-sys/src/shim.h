@@ -15,6 +15,8 @@ typedef PetscErrorCode (*petsc_rs_norm)(SNES, Vec, Vec, PetscReal *);
 
 typedef PetscErrorCode (*petsc_rs_destroy)(void *);
 
+/* Lets PETSc go on where nobody reads its screen; before PetscInitialize. */
+void petsc_rs_forgive_screen(void);
 PetscErrorCode petsc_rs_container_get(PetscContainer container, void **content);
 PetscErrorCode petsc_rs_container_set_destroy(PetscContainer container, petsc_rs_destroy destroy);
 PetscErrorCode petsc_rs_event_begin(PetscLogEvent event);

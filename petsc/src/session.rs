@@ -58,7 +58,8 @@ impl Session {
     /// Starts PETSc with the program's arguments, the program's name first.
     ///
     /// PETSc reads its options from the arguments, from the environment variable `PETSC_OPTIONS` and
-    /// from option files. From here on a failing call gives an `Err` and prints nothing.
+    /// from option files. From here on a failing call gives an `Err` and prints nothing. A screen that takes no text, as a
+    /// pipe whose reader has left, is no failure: what PETSc writes there goes to nothing.
     ///
     /// # Errors
     /// If MPI is not running, if PETSc was started before or is another version than the one this crate was
@@ -97,6 +98,7 @@ impl Session {
         // SAFETY: `arguments` is a NULL-terminated array of C strings that lives for ever, because
         // PETSc keeps pointers into it; so does the help text.
         unsafe {
+            sys::petsc_rs_forgive_screen();
             // Before the start, so that a missing option file comes back as an `Err` too.
             check(sys::PetscPushErrorHandler(Some(on_error), ptr::null_mut()))?;
             let help = if help.is_empty() {
