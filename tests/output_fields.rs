@@ -7,9 +7,13 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+#[path = "mpi_environment/mod.rs"]
+mod mpi_environment;
+
 use hdf5::{File, H5Type};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
+use mpi_environment::FEW_CORES;
 use ssnp155::contact::ContactState;
 use ssnp155::output::plot::{DeformedElement, gather_elements};
 use ssnp155::output::{
@@ -173,25 +177,15 @@ fn run_worker(name: &str, ranks: usize, killed: bool) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("fields-{name}"));
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
-    let mut command = Command::new("mpirun");
-    command.args([
-        "--timeout",
-        "60",
-        "--oversubscribe",
-        "-n",
-        &ranks.to_string(),
-    ]);
+    let mut command = Command::new("timeout");
+    command.args(["60", "mpirun", "-n", &ranks.to_string()]);
     command.arg(std::env::current_exe().unwrap()).args([
         "--ignored",
         "--exact",
         "worker",
         "--nocapture",
     ]);
-    command
-        .env(FOLDER, &folder)
-        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
-        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
-    command.env("OMPI_MCA_hwloc_base_binding_policy", "none");
+    command.env(FOLDER, &folder).envs(FEW_CORES);
     if killed {
         command.env(KILL, "1");
     }

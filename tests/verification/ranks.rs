@@ -11,7 +11,7 @@ use mpi_environment::FEW_CORES;
 
 /// The word that makes this program one of two ranks.
 pub const WORKER: &str = "--worker";
-/// Seconds after which mpirun ends the ranks.
+/// Seconds after which the ranks are ended.
 const LIMIT: &str = "300";
 
 /// Values by case and quantity.
@@ -27,8 +27,8 @@ pub fn by_two(cases: &[&Case]) -> Result<Found> {
     if names.is_empty() {
         return Ok(Found::default());
     }
-    let output = Command::new("mpirun")
-        .args(["--oversubscribe", "--timeout", LIMIT, "-n", "2"])
+    let output = Command::new("timeout")
+        .args([LIMIT, "mpirun", "-n", "2"])
         .arg(std::env::current_exe()?)
         .arg(WORKER)
         .args(names)
