@@ -45,7 +45,8 @@ def column(results, name):
     version, mumps = petsc or ("?", "?")
     rows["PETSc"] = version
     rows["MUMPS"] = find(r"MUMPS ([\d.]+)") if mumps == "true" else "none"
-    rows["MPI"] = "Open MPI " + find(r"Open MPI\) (\S+)")
+    hydra = re.search(r"Version: +(\S+)", versions)
+    rows["MPI"] = f"MPICH {hydra[1]}" if hydra else "Open MPI " + find(r"Open MPI\) (\S+)")
     rows["HDF5"] = find(r"HDF5 ([\d.]+\d)")
     rows["rustc"] = find(r"rustc (\S+)")
     for ranks in (1, 2):

@@ -92,7 +92,7 @@ results=results-platforms/$NAME
 source scripts/environment.sh
 {
     rustc --version
-    mpirun --version | head -n 1
+    mpirun --version | head -n 2
     dpkg-query -W -f='MUMPS ${Version}\n' libmumps-dev
     dpkg-query -W -f='HDF5 ${Version}\n' libhdf5-openmpi-dev
 } >"$results/versions.txt"
