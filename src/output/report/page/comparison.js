@@ -95,5 +95,6 @@ const redraw = width => charts.forEach(chart => chart.draw(width));
 redraw();
 let waiting = 0;
 window.addEventListener("resize", () => { cancelAnimationFrame(waiting); waiting = requestAnimationFrame(() => redraw()); });
-window.addEventListener("beforeprint", () => redraw(340));
-window.addEventListener("afterprint", () => redraw());
+window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => redraw());
+window.addEventListener("beforeprint", () => { document.documentElement.classList.add("printing"); redraw(340); });
+window.addEventListener("afterprint", () => { document.documentElement.classList.remove("printing"); redraw(); });
