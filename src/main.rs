@@ -1,5 +1,7 @@
 //! The program: opens MPI and PETSc, reads the case, runs it, and ends with a code that says how.
 
+#![deny(clippy::unwrap_used, clippy::expect_used)]
+
 use std::fmt::Display;
 use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -8,18 +8,21 @@ use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::os::unix::ffi::OsStringExt;
 use std::path::Path;
+use std::sync::Mutex;
 
-use bad_input_table::{FILES, Given, MISTAKES, Mistake, inverse, tools};
+use bad_input_table::{Given, Mistake, files, mistakes};
 use program::{Ended, run, run_in, scratch};
 
 /// Longest time an answer may take, s.
 const PATIENCE: u32 = 30;
+/// Answers that are waited for at the same time: MPI's start and end are mostly waiting.
+const SIDE_BY_SIDE: usize = 4;
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/bad-input.md");
 
 /// A folder with everything the table's inputs point to.
 fn prepared() -> std::path::PathBuf {
     let folder = scratch("bad-input");
-    for (name, content) in FILES.iter().chain(inverse::FILES).chain(tools::FILES) {
+    for (name, content) in files() {
         std::fs::write(folder.join(name), content).unwrap();
     }
     for name in ["folder", "taken/summary.json"] {
@@ -51,31 +54,36 @@ fn listing(folder: &Path) -> BTreeSet<String> {
         .collect()
 }
 
+/// What is wrong with the answers to a mistake.
+fn faults(mistake: &Mistake, folder: &Path) -> Vec<String> {
+    let fault = |&ranks: &usize| {
+        let ended = answer(mistake, ranks, folder);
+        let text = ended.text();
+        let good = ended.code == Some(2)
+            && ended.stderr.trim_end() == format!("ssnp155: {}", mistake.sentence)
+            && ended.stdout.trim().is_empty();
+        let (what, end) = (mistake.what, ended.code);
+        (!good || text.contains("panicked") || text.contains("PETSC ERROR"))
+            .then(|| format!("{what} ({ranks} ranks, code {end:?}): {text}"))
+    };
+    mistake.ranks.iter().filter_map(fault).collect()
+}
+
 #[test]
 fn every_mistake_of_the_table_gets_its_sentence_and_touches_nothing() {
     let folder = prepared();
     let before = listing(&folder);
-    let mut wrong = Vec::new();
-    for mistake in MISTAKES
-        .iter()
-        .chain(inverse::MISTAKES)
-        .chain(tools::MISTAKES)
-    {
-        for &ranks in mistake.ranks {
-            let ended = answer(mistake, ranks, &folder);
-            let text = ended.text();
-            let good = ended.code == Some(2)
-                && ended.stderr.trim_end() == format!("ssnp155: {}", mistake.sentence)
-                && ended.stdout.trim().is_empty();
-            if !good || text.contains("panicked") || text.contains("PETSC ERROR") {
-                let end = ended.code;
-                wrong.push(format!(
-                    "{} ({ranks} ranks, code {end:?}): {text}",
-                    mistake.what
-                ));
-            }
-        }
-    }
+    let left = Mutex::new(mistakes());
+    let next = || left.lock().unwrap().next();
+    let worker = || -> Vec<String> {
+        let own = std::iter::from_fn(next);
+        own.flat_map(|mistake| faults(mistake, &folder)).collect()
+    };
+    let wrong: Vec<String> = std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..SIDE_BY_SIDE).map(|_| scope.spawn(worker)).collect();
+        let found = workers.into_iter().map(|worker| worker.join().unwrap());
+        found.flatten().collect()
+    });
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     assert_eq!(listing(&folder), before, "a file was made");
 }
@@ -91,11 +99,7 @@ fn the_page_is_rendered_from_the_table() {
          and, where the third\ncolumn says so, on more.\n\n\
          | what is wrong | given | ranks | answer |\n|---|---|---|---|\n",
     );
-    for mistake in MISTAKES
-        .iter()
-        .chain(inverse::MISTAKES)
-        .chain(tools::MISTAKES)
-    {
+    for mistake in mistakes() {
         let given = match mistake.given {
             Given::Words(words) => format!("`{words}`"),
             Given::Environment(value) => format!("`PETSC_OPTIONS='{value}'`"),
@@ -111,7 +115,7 @@ fn the_page_is_rendered_from_the_table() {
         );
     }
     page += "\nThe files:\n\n";
-    for (name, content) in FILES.iter().chain(inverse::FILES).chain(tools::FILES) {
+    for (name, content) in files() {
         page += &format!("- `{name}`: `{}`\n", content.escape_ascii());
     }
     page += "- `long.csv`: one byte more than 1 MiB; `pipe`: a named pipe; `folder`: a folder; `taken`: a folder with a folder \
