@@ -5,7 +5,7 @@
   scripts/identification.py twin SEEDS NAME,NAME [OPTION ...]    hidden values, found again from each seed
   scripts/identification.py code_aster FILE                      the curve of code_aster as a measured file
 
-The program is target/release/ssnp155, or $SSNP155. Results stay in results-identification/.
+Needs scripts/requirements.txt. The program is target/release/ssnp155, or $SSNP155. Results stay in results-identification/.
 """
 import csv
 import json
@@ -15,6 +15,9 @@ import pathlib
 import random
 import subprocess
 import sys
+
+import numpy
+import scipy.stats
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAM = os.environ.get("SSNP155", str(ROOT / "target/release/ssnp155"))
@@ -82,29 +85,7 @@ def joint_distance(found, exact, names):
     off = [away(one["name"], one["estimate"]) for one in found["parameters"]]
     covariance = [[value / scale(one) / scale(other) for value, other in zip(row, names)]
                   for row, one in zip(exact["covariance"], names)]
-    rows = [[*row, value] for row, value in zip(covariance, off)]
-    solution = list(off)
-    for k in range(len(names)):  # Gauss; the matrix is small and positive definite
-        pivot = max(range(k, len(rows)), key=lambda i: abs(rows[i][k]))
-        rows[k], rows[pivot] = rows[pivot], rows[k]
-        for i in range(k + 1, len(rows)):
-            factor = rows[i][k] / rows[k][k]
-            rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k])]
-    for k in reversed(range(len(names))):
-        rest = sum(rows[k][j] * solution[j] for j in range(k + 1, len(names)))
-        solution[k] = (rows[k][-1] - rest) / rows[k][k]
-    return sum(a * b for a, b in zip(off, solution))
-
-
-def exceeded_by_chance(chi_squared, freedom):
-    """The probability of a larger chi-squared; an odd number of degrees of freedom counts as the even one below and above."""
-    def even(freedom):
-        term = total = math.exp(-chi_squared / 2)
-        for k in range(1, freedom // 2):
-            term *= chi_squared / 2 / k
-            total += term
-        return total
-    return even(freedom) if freedom % 2 == 0 else (even(freedom - 1) + even(freedom + 1)) / 2
+    return float(numpy.dot(off, numpy.linalg.solve(covariance, off)))
 
 
 def twin(seeds, names, options):
@@ -134,7 +115,7 @@ def twin(seeds, names, options):
               + f" | {joint:.2f} | {code} |", flush=True)
     freedom = seeds * len(names)
     print(f"sum of joint²: {total:.1f} for {freedom} degrees of freedom, exceeded by chance in"
-          f" {100 * exceeded_by_chance(total, freedom):.0f} of 100 cases")
+          f" {100 * scipy.stats.chi2.sf(total, freedom):.0f} of 100 cases")
 
 
 def code_aster(file):

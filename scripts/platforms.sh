@@ -29,17 +29,18 @@ inside() {
         env PROJECT="$project" "$@" bash -euo pipefail -s
         return
     fi
-    mkdir -p "$root/source" "$root/root/.cargo" "$root/root/.rustup"
+    mkdir -p "$root/source" "$root/opt/cargo" "$root/opt/rustup"
     unshare --mount bash -c '
         set -e
         root=$1 project=$2
         shift 2
         for place in proc sys dev; do mount --rbind "/$place" "$root/$place"; done
-        mount --bind "${CARGO_HOME:-$HOME/.cargo}" "$root/root/.cargo"
-        mount --bind "${RUSTUP_HOME:-$HOME/.rustup}" "$root/root/.rustup"
+        mount --bind "${CARGO_HOME:-$HOME/.cargo}" "$root/opt/cargo"
+        mount --bind "${RUSTUP_HOME:-$HOME/.rustup}" "$root/opt/rustup"
         mount --bind "$project" "$root/source"
         exec chroot "$root" env -i HOME=/root LC_ALL=C.UTF-8 \
-            PATH=/root/.cargo/bin:/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
+            CARGO_HOME=/opt/cargo RUSTUP_HOME=/opt/rustup \
+            PATH=/opt/cargo/bin:/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
             RUSTUP_TOOLCHAIN="${RUSTUP_TOOLCHAIN:-stable}" SSL_CERT_FILE=/etc/ssl/certs/ca-certificates.crt \
             CARGO_HTTP_CAINFO=/etc/ssl/certs/ca-certificates.crt PROJECT=/source "$@" bash -euo pipefail -s
     ' inside "$root" "$project" "$@"
