@@ -23,12 +23,11 @@ RUN apt-get update && apt-get install -y --no-install-recommends \
     && useradd solver && mkdir /case && chown solver /case
 COPY --from=build /source/target/release/ssnp155 /usr/local/bin/ssnp155
 COPY inputs /usr/local/share/ssnp155/inputs
-# As in scripts/environment.sh: one thread per rank, waiting ranks yield, no fixed cores, and no single-copy messages,
+# As in scripts/environment.sh: one thread per rank, no fixed cores, and no single-copy messages,
 # for which containers have no rights. Root is the user outside where the engine runs without root.
 ENV OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 \
     PRTE_MCA_hwloc_default_binding_policy=none \
     PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe \
-    OMPI_MCA_mpi_yield_when_idle=1 \
     OMPI_MCA_smsc=^cma \
     OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
     PRTE_ALLOW_RUN_AS_ROOT=1 PRTE_ALLOW_RUN_AS_ROOT_CONFIRM=1

@@ -6,10 +6,10 @@
 export OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1
 # Jobs side by side would otherwise all be pinned to the first core.
 export OMPI_MCA_hwloc_base_binding_policy=none PRTE_MCA_hwloc_default_binding_policy=none
-# More ranks than cores are slow but correct.
+# More ranks than cores are slow but correct: ranks that wait then yield their core, Open MPI sees to that itself. It is
+# not asked to where there are cores enough (mpi_yield_when_idle): MUMPS looks for messages at every block of its fronts,
+# on one rank as well, and each look would yield the core of a rank that works.
 export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
-# A rank that waits must not keep the core from one that works: without this, a busy machine is many times slower.
-export OMPI_MCA_mpi_yield_when_idle=1
 # What a rank says is enough where one fails; Open MPI 5 adds a paragraph of its own all the same.
 export OMPI_MCA_orte_execute_quiet=1
 # Containers often run as root, and without the rights for single-copy messages.

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Builds, tests and runs the benchmark on several platforms, each in a bare root of its own, and prints one table.
-#   scripts/platforms.sh [here] [bookworm] [trixie] [newest]     the last three unless named
+#   scripts/platforms.sh [here] [bookworm] [trixie] [newest] [mpich]     the last four unless named
 #   here               this machine as it is
 #   bookworm, trixie   Debian 12 and 13 with their packages
 #   newest             the newest PETSc 3.26 from its source package (PyPI), without MUMPS, in the root of trixie
+#   mpich              the same built with MPICH, in a Debian 13 of its own
 # Needs root, debootstrap, a Rust toolchain and pip. From the environment:
 #   PLATFORM_ROOTS     where the roots are and stay, 4 GB each: target/platforms unless given
 #   PLATFORM_MIRROR    Debian's mirror; the first one of this machine unless given
@@ -11,7 +12,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-[ $# -gt 0 ] || set -- bookworm trixie newest
+[ $# -gt 0 ] || set -- bookworm trixie newest mpich
 project=$PWD
 mkdir -p "${PLATFORM_ROOTS:=target/platforms}"
 roots=$(cd "$PLATFORM_ROOTS" && pwd)
@@ -21,19 +22,21 @@ results=$project/results-platforms
 mkdir -p "$results"
 
 # Runs a script, given on the standard input, in a root: the project at /source, the toolchain where it is outside.
-# What is mounted is seen by this command alone, and goes with it.
+# What is mounted is seen by this command alone, and goes with it. What the script starts reads nothing, or mpirun would
+# swallow the rest of it.
 inside() {
-    local root=$roots/$1
+    local root=$roots/$1 script
+    script=$(cat)
     shift
     if [ "$root" = "$roots/here" ]; then
-        env PROJECT="$project" "$@" bash -euo pipefail -s
+        env PROJECT="$project" "$@" bash -euo pipefail -c "$script" </dev/null
         return
     fi
     mkdir -p "$root/source" "$root/opt/cargo" "$root/opt/rustup"
     unshare --mount bash -c '
         set -e
-        root=$1 project=$2
-        shift 2
+        root=$1 project=$2 script=$3
+        shift 3
         for place in proc sys dev; do mount --rbind "/$place" "$root/$place"; done
         mount --bind "${CARGO_HOME:-$HOME/.cargo}" "$root/opt/cargo"
         mount --bind "${RUSTUP_HOME:-$HOME/.rustup}" "$root/opt/rustup"
@@ -42,31 +45,30 @@ inside() {
             CARGO_HOME=/opt/cargo RUSTUP_HOME=/opt/rustup \
             PATH=/opt/cargo/bin:/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
             RUSTUP_TOOLCHAIN="${RUSTUP_TOOLCHAIN:-stable}" SSL_CERT_FILE=/etc/ssl/certs/ca-certificates.crt \
-            CARGO_HTTP_CAINFO=/etc/ssl/certs/ca-certificates.crt PROJECT=/source "$@" bash -euo pipefail -s
-    ' inside "$root" "$project" "$@"
+            CARGO_HTTP_CAINFO=/etc/ssl/certs/ca-certificates.crt PROJECT=/source "$@" bash -euo pipefail -c "$script"
+    ' inside "$root" "$project" "$script" "$@" </dev/null
 }
 
-# A bare Debian with what a Rust toolchain needs, once.
+# A bare Debian with what a Rust toolchain needs, once, and what the project installs.
 debian() {
-    local release=$1
-    [ -x "$roots/$release/usr/bin/gcc" ] ||
-        debootstrap --variant=minbase --include=ca-certificates,gcc,libc6-dev,git "$release" "$roots/$release" "$mirror"
+    local root=$1 release=$2
+    [ -x "$roots/$root/usr/bin/gcc" ] ||
+        debootstrap --variant=minbase --include=ca-certificates,gcc,libc6-dev,git "$release" "$roots/$root" "$mirror"
     # The network of this machine: resolver, certificates and settings of apt.
-    cp /etc/resolv.conf "$roots/$release/etc/resolv.conf"
-    cp /etc/ssl/certs/ca-certificates.crt "$roots/$release/etc/ssl/certs/ca-certificates.crt"
-    inside "$release" <<<'cd "$PROJECT" && bash scripts/install.sh'
+    cp /etc/resolv.conf "$roots/$root/etc/resolv.conf"
+    cp /etc/ssl/certs/ca-certificates.crt "$roots/$root/etc/ssl/certs/ca-certificates.crt"
+    inside "$root" <<<'cd "$PROJECT" && bash scripts/install.sh'
 }
 
-# The newest PETSc, built without MUMPS and without Fortran, into /opt/petsc of trixie's root, once.
+# The newest PETSc, built without MUMPS and without Fortran by the root's mpicc into its /opt/petsc, once.
 newest() {
-    [ ! -e "$roots/trixie/opt/petsc/lib/libpetsc.so" ] || return 0
-    local sources=$roots/trixie/opt/src
-    mkdir -p "$sources"
+    local root=$1
+    [ ! -e "$roots/$root/opt/petsc/lib/libpetsc.so" ] || return 0
     [ -x "$roots/pip/bin/pip" ] || python3 -m venv "$roots/pip"
     "$roots/pip/bin/pip" install --quiet setuptools wheel numpy
     "$roots/pip/bin/pip" download --quiet --no-deps --no-build-isolation --no-binary petsc \
-        --dest "$sources" "$petsc_release"
-    inside trixie <<'END'
+        --dest "$roots/$root/opt/src" "$petsc_release"
+    inside "$root" <<'END'
 DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends python3 make >/dev/null
 cd /opt/src
 tar xzf petsc-3.*.tar.gz
@@ -76,6 +78,15 @@ python3 ./configure --prefix=/opt/petsc --with-cc=mpicc --with-cxx=0 --with-fc=0
     --with-shared-libraries=1 COPTFLAGS=-O2 --with-blaslapack-lib="-llapack -lblas"
 make -j"$(nproc)" all
 make install
+END
+}
+
+# MPICH in place of Open MPI, beside which Debian's PETSc stays unused.
+mpich() {
+    inside "$1" <<'END'
+DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends mpich libmpich-dev libhdf5-mpich-dev >/dev/null
+update-alternatives --set mpi /usr/bin/mpicc.mpich
+update-alternatives --set mpirun /usr/bin/mpirun.mpich
 END
 }
 
@@ -93,7 +104,8 @@ results=results-platforms/$NAME
 source scripts/environment.sh
 {
     rustc --version
-    mpirun --version | head -n 2
+    # All of it, or a closed pipe would end this script.
+    mpirun --version | sed -n 1,2p
     dpkg-query -W -f='MUMPS ${Version}\n' libmumps-dev
     dpkg-query -W -f='HDF5 ${Version}\n' libhdf5-openmpi-dev
 } >"$results/versions.txt"
@@ -114,16 +126,22 @@ for name in "$@"; do
     case $name in
     here) measure here here ;;
     bookworm | trixie)
-        debian "$name"
+        debian "$name" "$name"
         measure "$name" "$name"
         ;;
     newest)
-        debian trixie
-        newest
+        debian trixie trixie
+        newest trixie
         measure newest trixie PETSC_DIR=/opt/petsc
         ;;
+    mpich)
+        debian trixie-mpich trixie
+        mpich trixie-mpich
+        newest trixie-mpich
+        measure mpich trixie-mpich PETSC_DIR=/opt/petsc HDF5_DIR=/usr/lib/x86_64-linux-gnu/hdf5/mpich
+        ;;
     *)
-        echo "platforms: no platform is called $name; there are here, bookworm, trixie and newest" >&2
+        echo "platforms: no platform is called $name; there are here, bookworm, trixie, newest and mpich" >&2
         exit 2
         ;;
     esac

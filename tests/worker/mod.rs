@@ -9,7 +9,7 @@ use petsc::Session;
 
 #[path = "../mpi_environment/mod.rs"]
 mod mpi_environment;
-use mpi_environment::FEW_CORES;
+use mpi_environment::{FEW_CORES, YIELD};
 
 const WORKER: &str = "--worker";
 
@@ -21,11 +21,12 @@ pub fn on_ranks(name: &str, numbers: &[usize], worker: fn(&SimpleCommunicator)) 
     }
     let mut held = true;
     for ranks in numbers {
-        let status = Command::new("mpirun")
-            .args(["--timeout", "120", "-n", &ranks.to_string()])
+        let status = Command::new("timeout")
+            .args(["120", "mpirun", "-n", &ranks.to_string()])
             .arg(env::current_exe().unwrap())
             .arg(WORKER)
             .envs(FEW_CORES)
+            .envs([YIELD])
             .status()
             .unwrap();
         let verdict = if status.success() { "ok" } else { "FAILED" };
