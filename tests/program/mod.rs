@@ -50,9 +50,7 @@ pub fn command(ranks: usize, words: &[&str]) -> Command {
         command
     };
     command.args(words);
-    command
-        .envs(FEW_CORES)
-        .envs((ranks > 1).then_some(YIELD));
+    command.envs(FEW_CORES).envs((ranks > 1).then_some(YIELD));
     command
 }
 
