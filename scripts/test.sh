@@ -25,7 +25,7 @@ echo "test: the fields, read back by VTK"
 .venv/bin/python -c 'import matplotlib, scipy, selenium, vtk' 2>/dev/null || .venv/bin/pip install --quiet --requirement scripts/requirements.txt
 .venv/bin/python scripts/read_fields.py results
 
-echo "test: the report in a browser, of this run, of one that fails, of one that is interrupted, and of two side by side"
+echo "test: the report in a browser: of this run, of one that fails, is interrupted, is resumed, and of two side by side"
 # A run of the program that has to end with this code.
 ends_with() {
     local wanted=$1 code=0
@@ -40,6 +40,11 @@ ends_with 1 -sheet_nx 40 -sheet_ny 2 -newton_max_iterations 3 -dt_min 0.1 -overw
 ends_with 3 -friction_coefficient 0.1342 -sheet_nx 85 -sheet_ny 3 -dt_initial 0.5 -dt_max 0.5 -wall_limit 5 \
     -overwrite -output_dir results/interrupted
 .venv/bin/python scripts/check_report.py results/interrupted
+short=(-friction_coefficient 0.1342 -sheet_nx 40 -sheet_ny 2 -stroke 8 -time_load 252 -unload_fraction 0.1 -time_unload 25
+    -dt_max 1 -report_strokes 4 -output_dir results/resumed)
+ends_with 3 "${short[@]}" -wall_limit 1 -overwrite
+ends_with 0 "${short[@]}" -restart newest
+.venv/bin/python scripts/check_report.py results/resumed
 ends_with 0 -compare results,results/failed -output_dir results/compared
 .venv/bin/python scripts/check_report.py results/compared
 
