@@ -186,11 +186,11 @@ def exponent(results, quantity):
 
 
 def whole():
-    """The whole benchmark on finer meshes, two ranks."""
+    """The whole benchmark on finer meshes."""
     rows = []
     for case, options in (("none", []), ("friction", ["-options_file", "inputs/ssnp155-friction.opts"])):
         for nx, ny in ((170, 5), (340, 10), (680, 20)):
-            r = run(f"whole-{case}-{nx}", [*options, "-sheet_nx", str(nx), "-sheet_ny", str(ny)], ranks=2)
+            r = run(f"whole-{case}-{nx}", [*options, "-sheet_nx", str(nx), "-sheet_ny", str(ny)])
             rows.append((f"{nx} x {ny}", case, r["unknowns"], f"{r['steps']} / {r['refused']}", r["iterations"],
                          f"{r['iterations'] / r['steps']:.1f}", certificates(r),
                          f"{r['summary']['angles_deg']['full stroke']:.3f}°", f"{released(r):.2f}°"))
