@@ -170,6 +170,18 @@ def prints(browser):
     paper = browser.execute_script("return getComputedStyle(document.documentElement).getPropertyValue('--page').trim()")
     browser.execute_script("window.dispatchEvent(new Event('afterprint'))")
     expect(paper == "#fff", f"the page prints on {paper}")
+    # A4 less margins of 14 mm, where nobody can scroll.
+    sheet = {"width": 688, "height": 1000, "deviceScaleFactor": 1, "mobile": False}
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", sheet)
+    cut = browser.execute_script(
+        "const wide = e => e.scrollWidth > e.clientWidth + 1, rolls = e => ['auto', 'scroll'].includes(getComputedStyle(e).overflowX);"
+        "return [...document.querySelectorAll('body *')].filter(e => wide(e) && rolls(e)).map(e => e.id || e.className || e.tagName)"
+        ".concat(document.documentElement.scrollWidth > 688 ? ['the page'] : [])"
+    )
+    browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+    expect(not cut, f"wider than a sheet of paper: {cut}")
 
 
 def says(browser, summary):

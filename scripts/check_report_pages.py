@@ -53,6 +53,8 @@ PAGES = [
     ("a request", page("<h1>A</h1><img alt='' src='file:///nowhere.png'>"), "loaded", ["logs", "asks for file:///nowhere.png"]),
     ("an error", page("<h1>A</h1><script>nothing.there()</script>"), "loaded", ["logs"]),
     ("a dark sheet of paper", page("<h1>A</h1>"), "printed", ["as next to nothing", "prints on #14181e"]),
+    ("a table that is cut on paper", page("<h1>A</h1><div id='t' style='overflow-x: auto'><p style='width: 900px'>long</p></div>"), "printed",
+     ["as next to nothing", "prints on #14181e", "wider than a sheet of paper: ['t']"]),
     ("two states", controls(), "used", []),
     ("a dead picture", controls(drawn="['whole', 'near', 'pressure']"), "used", ["the slider does not change force"]),
     ("a dead button", controls(play=""), "used", ["the play button does not play"]),
