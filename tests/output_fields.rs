@@ -13,7 +13,7 @@ mod mpi_environment;
 use hdf5::{File, H5Type};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
-use mpi_environment::{FEW_CORES, YIELD};
+use mpi_environment::FEW_CORES;
 use ssnp155::contact::ContactState;
 use ssnp155::output::plot::{DeformedElement, gather_elements};
 use ssnp155::output::{
@@ -185,7 +185,7 @@ fn run_worker(name: &str, ranks: usize, killed: bool) -> PathBuf {
         "worker",
         "--nocapture",
     ]);
-    command.env(FOLDER, &folder).envs(FEW_CORES).envs([YIELD]);
+    command.env(FOLDER, &folder).envs(FEW_CORES);
     if killed {
         command.env(KILL, "1");
     }

@@ -16,8 +16,3 @@ pub const FEW_CORES: [(&str, &str); 12] = [
     // All ranks are here; Open MPI 5 complains of networks it will not use.
     ("OMPI_MCA_btl", "^tcp"),
 ];
-
-/// For several ranks, because tests run side by side: Open MPI sees that one job has more ranks than there are cores, but
-/// not that several have.
-#[allow(dead_code)] // not every test that takes this in starts several ranks
-pub const YIELD: (&str, &str) = ("OMPI_MCA_mpi_yield_when_idle", "1");

@@ -9,7 +9,7 @@ use std::process::Command;
 
 #[path = "../mpi_environment/mod.rs"]
 mod mpi_environment;
-pub use mpi_environment::{FEW_CORES, YIELD};
+pub use mpi_environment::FEW_CORES;
 
 /// How a run of the program ended.
 pub struct Ended {
@@ -50,7 +50,7 @@ pub fn command(ranks: usize, words: &[&str]) -> Command {
         command
     };
     command.args(words);
-    command.envs(FEW_CORES).envs((ranks > 1).then_some(YIELD));
+    command.envs(FEW_CORES);
     command
 }
 
@@ -76,7 +76,6 @@ pub fn run_in(
     command.arg(env!("CARGO_BIN_EXE_ssnp155")).args(words);
     command
         .envs(FEW_CORES)
-        .envs((ranks > 1).then_some(YIELD))
         .envs(environment)
         .current_dir(folder);
     let output = command.output().expect("timeout and mpirun are needed");

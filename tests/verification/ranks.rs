@@ -7,7 +7,7 @@ use std::process::Command;
 mod mpi_environment;
 
 use crate::row::{Answer, Case, Result};
-use mpi_environment::{FEW_CORES, YIELD};
+use mpi_environment::FEW_CORES;
 
 /// The word that makes this program one of two ranks.
 pub const WORKER: &str = "--worker";
@@ -33,7 +33,6 @@ pub fn by_two(cases: &[&Case]) -> Result<Found> {
         .arg(WORKER)
         .args(names)
         .envs(FEW_CORES)
-        .envs([YIELD])
         .output()?;
     let text = String::from_utf8_lossy(&output.stdout);
     print!("{text}");

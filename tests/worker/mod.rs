@@ -9,7 +9,7 @@ use petsc::Session;
 
 #[path = "../mpi_environment/mod.rs"]
 mod mpi_environment;
-use mpi_environment::{FEW_CORES, YIELD};
+use mpi_environment::FEW_CORES;
 
 const WORKER: &str = "--worker";
 
@@ -26,7 +26,6 @@ pub fn on_ranks(name: &str, numbers: &[usize], worker: fn(&SimpleCommunicator)) 
             .arg(env::current_exe().unwrap())
             .arg(WORKER)
             .envs(FEW_CORES)
-            .envs([YIELD])
             .status()
             .unwrap();
         let verdict = if status.success() { "ok" } else { "FAILED" };
