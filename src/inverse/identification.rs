@@ -201,7 +201,7 @@ impl Identification {
             uncertainty_N: point.uncertainty,
             computed_N: point.force + residual * point.uncertainty,
         };
-        let distance = best.way_left();
+        let distance = search.way_left(best);
         let degrees_of_freedom = points.len() - sought.len();
         Self {
             measured_curve: path.to_owned(),
