@@ -75,8 +75,9 @@ pub(super) fn fit(search: &Rc<RefCell<Search>>, near: f64) -> Result<Ended, Inve
     let mut tao = Tao::new(&alone)?;
     tao.set_variable_bounds(&lower, &upper)?;
     let shared = Rc::clone(search);
-    // Below the residuals zeros, which their curvature belongs to.
-    let template = Vector::new(&alone, rows + columns)?;
+    // Below the residuals zeros, which the curvature beyond Gauss and Newton's belongs to.
+    let all_rows = rows + 2 * columns;
+    let template = Vector::new(&alone, all_rows)?;
     tao.set_residual(&template, move |x, r| {
         let at = x.read()?.to_vec();
         let mut search = shared.borrow_mut();
@@ -90,11 +91,10 @@ pub(super) fn fit(search: &Rc<RefCell<Search>>, near: f64) -> Result<Ended, Inve
         r[..fit.residual.len()].copy_from_slice(&fit.residual);
         Ok(())
     })?;
-    let (m, n) = ((rows + columns) as i32, columns as i32);
+    let (m, n) = (all_rows as i32, columns as i32);
     let at_row: Vec<i32> = (0..m).flat_map(|row| (0..n).map(move |_| row)).collect();
     let at_column: Vec<i32> = (0..m).flat_map(|_| 0..n).collect();
-    let matrix =
-        Matrix::rectangular_from_coo(&alone, [rows + columns, columns], &at_row, &at_column)?;
+    let matrix = Matrix::rectangular_from_coo(&alone, [all_rows, columns], &at_row, &at_column)?;
     let shared = Rc::clone(search);
     tao.set_residual_jacobian(matrix, move |x, matrix| {
         let at = x.read()?.to_vec();

@@ -10,8 +10,8 @@ use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 use super::search::Fit;
 use super::statistics::{Statistics, dot};
 
-/// A direction counts as told by at least this share of the best one.
-const ROUNDING: f64 = 1e-10;
+/// Directions that the curve tells less than this share of the best one count as told by it: their squares have to be above rounding.
+const ROUNDING: f64 = 1e-7;
 /// How far the other run may be, in standard errors.
 const REACH: f64 = 2.0;
 /// Bounds that a step may meet or leave.
@@ -19,12 +19,14 @@ const MOST_CHANGES: usize = 50;
 
 /// Half the sum of squares near a run.
 pub(super) struct Quadratic {
-    at: Vec<f64>,
-    gradient: DVector<f64>,
     /// A step times this is its length in standard errors.
     errors: DMatrix<f64>,
     /// This and `errors` one below the other, times its transpose from the left, are the curvature.
     beyond: DMatrix<f64>,
+    /// The step to the least value in the unit box.
+    step: DVector<f64>,
+    /// For each parameter that is at a bound and stays there the largest singular value, for the others zero.
+    held: DVector<f64>,
 }
 
 impl Quadratic {
@@ -53,23 +55,29 @@ impl Quadratic {
             .collect();
         // The nearest one has the last word.
         pairs.sort_by(|one, other| other.0.norm().total_cmp(&one.0.norm()));
+        let beyond = root(curvature(n, &pairs)) * &errors;
+        let hessian = errors.tr_mul(&errors) + beyond.tr_mul(&beyond);
+        let step = bounded_step(&hessian, &DVector::from_vec(here.gradient()), &here.at);
+        let stays = |k: usize| step[k] == 0.0 && (here.at[k] <= 0.0 || here.at[k] >= 1.0);
         Self {
-            at: here.at.clone(),
-            gradient: DVector::from_vec(here.gradient()),
-            beyond: root(curvature(n, &pairs)) * &errors,
+            held: DVector::from_fn(n, |k, _| if stays(k) { best } else { 0.0 }),
             errors,
+            beyond,
+            step,
         }
     }
 
-    /// Rows below the derivatives that bring the curvature in, without any residual.
+    /// Rows below the derivatives that bring the curvature in, without any residual: two for each parameter. Those of a held
+    /// parameter are stiff; a step cut off at its bound would leave the valley by what the others do with it.
     pub fn rows(&self) -> Vec<f64> {
-        self.beyond.transpose().as_slice().to_vec()
+        let mut rows = self.beyond.transpose().as_slice().to_vec();
+        rows.extend_from_slice(DMatrix::from_diagonal(&self.held).as_slice());
+        rows
     }
 
     /// How far the least value within the unit box is, in standard errors.
     pub fn way(&self) -> f64 {
-        let hessian = self.errors.tr_mul(&self.errors) + self.beyond.tr_mul(&self.beyond);
-        (&self.errors * bounded_step(&hessian, &self.gradient, &self.at)).norm()
+        (&self.errors * &self.step).norm()
     }
 }
 
@@ -144,4 +152,111 @@ fn bounded_step(hessian: &DMatrix<f64>, gradient: &DVector<f64>, at: &[f64]) -> 
         held[released] = false;
     }
     step
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A run with these residuals and derivatives.
+    fn fit(at: &[f64], residual: Vec<f64>, columns: Vec<Vec<f64>>) -> Fit {
+        let (values, folder, records) = (Vec::new(), String::new(), Vec::new());
+        Fit {
+            at: at.to_vec(),
+            values,
+            folder,
+            records,
+            residual,
+            columns,
+        }
+    }
+
+    /// A line of slope 10 and, apart from it, what the model cannot meet: its bend times the rest of 3 is a curvature of 6b.
+    fn bent(bend: f64, x: f64) -> Fit {
+        let residual = vec![10.0 * x - 5.0, 3.0 + bend * (x - 0.5).powi(2)];
+        fit(&[x], residual, vec![vec![10.0, 2.0 * bend * (x - 0.5)]])
+    }
+
+    #[test]
+    fn a_run_beside_shows_the_curvature_that_the_derivatives_do_not() {
+        let (here, beside) = (bent(50.0, 0.52), bent(50.0, 0.54));
+        let alone = Quadratic::around(&here, [].into_iter()).way();
+        let both = Quadratic::around(&here, [&beside].into_iter()).way();
+        let error = (100.0 + 2.0_f64.powi(2)).sqrt();
+        // The minimum is at 0.5: Gauss and Newton go four times as far. The difference is the curvature between the runs.
+        assert!((both / (0.02 * error) - 1.0).abs() < 0.02, "{both}");
+        assert!(alone > 0.075 * error, "{alone}");
+    }
+
+    #[test]
+    fn what_bends_downwards_or_is_far_away_adds_nothing() {
+        let here = bent(-5.0, 0.52);
+        let alone = Quadratic::around(&here, [].into_iter()).way();
+        for beside in [bent(-5.0, 0.54), bent(-5.0, 0.9)] {
+            let both = Quadratic::around(&here, [&beside].into_iter());
+            assert_eq!(both.way(), alone);
+            assert!(both.rows().iter().all(|entry| *entry == 0.0));
+        }
+    }
+
+    #[test]
+    fn steps_along_each_axis_show_a_whole_matrix() {
+        let wanted = DMatrix::from_row_slice(2, 2, &[3.0, -1.0, -1.0, 2.0]);
+        let steps = [[0.5, 0.1], [-0.2, 0.3]].map(|s| DVector::from_row_slice(&s));
+        let in_turn = steps.iter().cycle().take(80);
+        let pairs: Vec<_> = in_turn.map(|s| (s.clone(), &wanted * s)).collect();
+        assert!((curvature(2, &pairs) - &wanted).norm() < 1e-9);
+        // After one round the last step is exact.
+        let once = curvature(2, &pairs[..2]);
+        assert!((&once * &steps[1] - &wanted * &steps[1]).norm() < 1e-14);
+        assert_eq!(once, once.transpose());
+    }
+
+    #[test]
+    fn a_bound_in_the_way_changes_the_others_along_the_valley() {
+        // A valley along x = y, and the least value beyond both bounds.
+        let hessian = DMatrix::from_row_slice(2, 2, &[101.0, -100.0, -100.0, 101.0]);
+        let gradient = DVector::from_row_slice(&[-1.0, -1.0]);
+        let step = bounded_step(&hessian, &gradient, &[1.0, 0.4]);
+        // The first stays, the second goes to where its own slope ends, and not to its bound.
+        assert_eq!(step[0], 0.0);
+        assert!((step[1] - 1.0 / 101.0).abs() < 1e-14, "{step}");
+        // A parameter at its bound is let go where that is the way down.
+        let inwards = bounded_step(&hessian, &-gradient, &[1.0, 0.4]);
+        assert!(
+            inwards[0] < 0.0 && (inwards[1] + 0.4).abs() < 1e-14,
+            "{inwards}"
+        );
+    }
+
+    #[test]
+    fn a_parameter_that_stays_at_its_bound_has_a_stiff_row() {
+        let columns = vec![vec![10.0, -10.0, 1.0], vec![-10.0, 10.0, 1.0]];
+        let here = fit(&[1.0, 0.4], vec![0.0, 0.0, -1.0], columns);
+        let rows = Quadratic::around(&here, [].into_iter()).rows();
+        assert_eq!(rows[..4], [0.0; 4]);
+        // As stiff as the best told direction: across the valley the derivative is 20 of each difference, over √2.
+        assert!((rows[4] - 20.0).abs() < 1e-12, "{rows:?}");
+        assert_eq!(rows[5..], [0.0; 3]);
+    }
+
+    #[test]
+    fn a_parameter_without_influence_is_nowhere_to_go() {
+        let here = fit(
+            &[0.5, 0.5],
+            vec![1.0, 0.0],
+            vec![vec![4.0, 3.0], vec![0.0, 0.0]],
+        );
+        let way = Quadratic::around(&here, [].into_iter()).way();
+        // The other one: gradient 4, curvature 25, standard error 1/5.
+        assert!((way - 0.8).abs() < 1e-12, "{way}");
+        // Two with one effect.
+        let here = fit(
+            &[0.5, 0.5],
+            vec![1.0, 0.0],
+            vec![vec![4.0, 3.0], vec![8.0, 6.0]],
+        );
+        let way = Quadratic::around(&here, [].into_iter()).way();
+        assert!((way - 0.8).abs() < 1e-6, "{way}");
+    }
 }

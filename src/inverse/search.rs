@@ -1,7 +1,6 @@
 //! The weighted residuals of a measured curve and their derivatives, each from whole runs.
 
 use super::InverseError;
-use super::Statistics;
 use super::quadratic::Quadratic;
 use super::runs::{Ran, Runs};
 use super::statistics::dot;
