@@ -201,24 +201,33 @@ def along(values, names, direction, way, by_logarithm):
 
 
 def valley(names, options):
-    """The sum of squares of the exact curve where the linear model has the square of the way; with each scale."""
-    _, _, options, _, _ = prepare(names, options)
-    measured = read_measured(RESULTS / "truth.csv")
-    measured = [[stroke, force, 0.01 * force] for stroke, force, _ in measured]
-    _, slopes = residuals(RESULTS / "truth/run-001", measured, names)
-    ways = [-0.6, -0.4, -0.2, -0.1, 0.1, 0.2, 0.4, 0.6]
+    """The sum of squares of the exact curve where the linear model has the square of the way, with each scale; and what noise
+    adds to half its slope by the way, which in the linear model is the same everywhere."""
+    _, _, options, forces, _ = prepare(names, options)
+    measured = [[stroke, force, 0.01 * force] for stroke, force in zip(STROKES, forces)]
+    _, at_truth = residuals(RESULTS / "truth/run-001", measured, names)
+    noises = {}
+    for seed in range(1, 6):
+        chance = random.Random(seed)
+        noises[seed] = [chance.gauss(0, 1) for _ in STROKES]
+    slopes_by_noise = {seed: [] for seed in noises}
+    ways = [-0.6, -0.4, -0.2, -0.1, 0, 0.1, 0.2, 0.4, 0.6]
     print("| way, standard errors | " + " | ".join(f"{way:g}" for way in ways) + " |")
     print("|---" * (len(ways) + 1) + "|")
-    exact = exact_forces([*options, *words(TRUE)])
-    measured = [[stroke, force, 0.01 * force] for stroke, force in zip(STROKES, exact)]
     for what, by_logarithm in (("as the program scales", logarithmic), ("all by logarithms", lambda name: BOUNDS[name][0] > 0)):
-        _, values, right = numpy.linalg.svd(slopes * scales(names, TRUE, by_logarithm))
+        _, values, right = numpy.linalg.svd(at_truth * scales(names, TRUE, by_logarithm))
         direction = right[-1] / values[-1] * numpy.sign(right[-1][-1])
         sums = []
         for way in ways:
-            residual, _ = run_at(along(TRUE, names, direction, way, by_logarithm), names, measured, options)
+            there = along(TRUE, names, direction, way, by_logarithm)
+            residual, slopes = run_at(there, names, measured, options)
             sums.append(f"{residual @ residual:.2g}")
-        print(f"| {what} | " + " | ".join(sums) + " |", flush=True)
+            if by_logarithm is logarithmic:
+                for seed, noise in noises.items():
+                    slopes_by_noise[seed].append(f"{-numpy.dot(noise, slopes * scales(names, there) @ direction):.2f}")
+        print(f"| sum of squares, {what} | " + " | ".join(sums) + " |", flush=True)
+    for seed, row in slopes_by_noise.items():
+        print(f"| slope by the noise of seed {seed} | " + " | ".join(row) + " |")
 
 
 def beside(seeds, names, options):

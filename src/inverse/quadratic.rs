@@ -230,6 +230,14 @@ mod tests {
     }
 
     #[test]
+    fn where_every_parameter_stays_at_its_bound_no_way_is_left() {
+        let here = fit(&[1.0], vec![-2.0, 0.0], vec![vec![4.0, 3.0]]);
+        let around = Quadratic::around(&here, [].into_iter());
+        assert_eq!(around.way(), 0.0);
+        assert_eq!(around.rows(), [0.0, 5.0]);
+    }
+
+    #[test]
     fn a_parameter_that_stays_at_its_bound_has_a_stiff_row() {
         let columns = vec![vec![10.0, -10.0, 1.0], vec![-10.0, 10.0, 1.0]];
         let here = fit(&[1.0, 0.4], vec![0.0, 0.0, -1.0], columns);
