@@ -73,6 +73,8 @@ FRICTION_CHANGES = [
     ("back-800", "way back in 800 equal steps", ["-fixed_steps_unload", "800"]),
     ("back-200", "way back in 200 equal steps", ["-fixed_steps_unload", "200"]),
     ("back-free", "way back in steps of at most 4 ms", ["-fixed_steps_unload", "0"]),
+    ("back-free-8", "... steps of at most 8 ms, down as well", ["-fixed_steps_unload", "0", "-dt_max", "8"]),
+    ("back-free-9", "... steps of at most 9 ms, down as well", ["-fixed_steps_unload", "0", "-dt_max", "9"]),
     ("out", "all the way out, in 4000 equal steps", ["-unload_fraction", "1", "-time_unload", "1000", "-fixed_steps_unload", "4000"]),
     ("compliance-quarter", "a quarter of the contact compliance", ["-contact_compliance", "1.25e-5"]),
     ("slip-half", "half the friction compliance", ["-friction_compliance", "2.5e-4"]),
