@@ -27,7 +27,7 @@ FINEST = ["-sheet_nx", "340", "-sheet_ny", "8", "-contact_points_per_edge", "8"]
 # Every half millimetre down: steps end there, so nothing is interpolated on the way down.
 REPORTED = ["-report_strokes", ",".join(f"{0.5 * k:g}" for k in range(1, 57))]
 VARIANTS = {"reference": FINEST, "coarse": [], "steps": ["-dt_max", "6"]}
-# With friction the sheet yields again until the punch is 1.2 to 1.5 mm back, and a longer step sees the end of that earlier: 0.05 degrees
+# With friction the sheet yields again until the punch is 1.35 mm back, and a longer step sees the end of that earlier: 0.05 degrees
 # for each millisecond. So the way back has equal steps of 0.25 ms, and of 0.5 for the bar.
 BACK = {"reference": "4000", "coarse": "4000", "steps": "2000"}
 QUANTITIES = [("force_N", "force of the whole sheet", "%.3f"), ("dy_A_punch_mm", "DY of A, punch side", "%.5f"),
