@@ -6,18 +6,22 @@
 runs the case of OPTIONS once with -sensitivity and twice per parameter and share with the parameter above and below its
 value, all with the same steps (choose them with -fixed_steps_load and -fixed_steps_unload), and prints a table: per
 parameter and quantity the largest difference in a row as a share of the column's largest derivative, for the share that
-agrees best, and the stroke where it is. Rows beyond --until (mm, going down) are listed apart. Further lines are the
-derivatives of the released angles. A share whose runs have other steps, because another solve was refused, is left out.
+agrees best, and the stroke where it is. Rows beyond --until (mm, going down) are listed apart. Where it is above 1e-5, a
+second table has the derivative between the differences to the side below and to the side above: at a kink they differ, and the
+derivative is one of them. Further lines are the derivatives of the released angles. A share whose runs have other steps,
+because another solve was refused, is left out. The program is target/release/ssnp155, or $SSNP155.
 """
 
 import argparse
 import csv
 import json
+import os
 import pathlib
 import subprocess
 import sys
 
-PROGRAM = pathlib.Path(__file__).parent.parent / "target/release/ssnp155"
+PROGRAM = os.environ.get("SSNP155", str(pathlib.Path(__file__).parent.parent / "target/release/ssnp155"))
+WORTH_A_LOOK = 1e-5
 QUANTITIES = ["force_N", "angle_deg", "dy_A_sheet_mm"]
 
 
@@ -28,7 +32,7 @@ def rows(path):
 
 def run(folder, options):
     folder.mkdir(parents=True, exist_ok=True)
-    words = [str(PROGRAM), *options, "-output_dir", str(folder), "-output_every", "0", "-overwrite"]
+    words = [PROGRAM, *options, "-output_dir", str(folder), "-output_every", "0", "-overwrite"]
     ended = subprocess.run(words, capture_output=True, text=True)
     if ended.returncode not in (0, 1) or "FAILED" in ended.stdout:
         sys.exit(f"{' '.join(words)}\n{ended.stdout[-2000:]}{ended.stderr}")
@@ -45,22 +49,25 @@ def column(table, quantity, name):
 
 
 def compare(name, share, value, exact, above, below, until):
-    """Per quantity: largest difference up to `until` and beyond it, each with its stroke."""
+    """Per quantity: largest difference up to `until` and beyond it, each with its stroke, and there the difference to the side
+    below, the derivative, and the difference to the side above."""
     found = {}
     strokes = [float(row["stroke_mm"]) for row in exact]
     deepest = strokes.index(max(strokes))
     for quantity in QUANTITIES:
         slopes = column(exact, quantity, name)
-        worst = [(0.0, 0.0), (0.0, 0.0)]
+        worst = [(0.0, 0.0, ()), (0.0, 0.0, ())]
         first = [i for i, stroke in enumerate(strokes) if i <= deepest and stroke <= until]
         for part in (0, 1):
             members = [i for i in range(len(slopes)) if (i in first) == (part == 0)]
             scale = max((abs(slopes[i]) for i in members), default=0.0)
             for i in members:
-                difference = (float(above[i][quantity]) - float(below[i][quantity])) / (2 * share * value)
+                low, middle, high = (float(table[i][quantity]) for table in (below, exact, above))
+                difference = (high - low) / (2 * share * value)
                 error = abs(difference - slopes[i]) / max(scale, 1e-300)
                 if error > worst[part][0]:
-                    worst[part] = (error, strokes[i])
+                    sides = ((middle - low) / (share * value), slopes[i], (high - middle) / (share * value))
+                    worst[part] = (error, strokes[i], sides)
         found[quantity] = worst
     return found
 
@@ -81,7 +88,7 @@ def main():
     values = {name: float(summary["provenance"]["options"][name]) for name in names}
     print("| parameter | quantity | up to", given.until, "mm | share | at | beyond | share | at |")
     print("|---|---|---|---|---|---|---|---|")
-    angles = []
+    angles, at_kinks = [], []
     for name in names:
         found = {}
         for share in map(float, given.shares.split(",")):
@@ -101,9 +108,16 @@ def main():
             parts = []
             for part in (0, 1):
                 share = min(found, key=lambda share: found[share][quantity][part][0])
-                error, stroke = found[share][quantity][part]
+                error, stroke, sides = found[share][quantity][part]
+                if error > WORTH_A_LOOK:
+                    at_kinks.append((name, quantity, stroke, share, *sides))
                 parts.append(f"{error:.1e} | {share:g} | {stroke:.2f}")
             print(f"| `{name}` | {quantity} | {' | '.join(parts)} |")
+    print()
+    print("| parameter | quantity | at | share | difference below | derivative | difference above |")
+    print("|---|---|---|---|---|---|---|")
+    for name, quantity, stroke, share, below, slope, above in at_kinks:
+        print(f"| `{name}` | {quantity} | {stroke:.2f} | {share:g} | {below:.7g} | {slope:.7g} | {above:.7g} |")
     print()
     print("| parameter | angle | derivative | share | difference of runs |")
     print("|---|---|---|---|---|")

@@ -119,6 +119,33 @@ fn hidden_friction_and_strength_are_found_again_on_one_rank_and_on_two() {
     }
 }
 
+/// Of strength and exponent the curve tells little more than one number: what is left bends the valley by its noise.
+#[test]
+fn friction_strength_and_exponent_are_found_again_and_what_is_hardly_told_is_said() {
+    let folder = scratch("identify-valley");
+    let law = "-hardening hollomon -stroke 28.5";
+    let search = "-friction_coefficient 0.094 -hollomon_k 715 -hollomon_n 0.156 \
+                  -parameters friction_coefficient:0:0.5,hollomon_k:200:1000,hollomon_n:0.05:0.5";
+    let search = search.split_whitespace().collect::<Vec<_>>().join(" ");
+    let hidden =
+        "-hardening hollomon -friction_coefficient 0.1342 -hollomon_k 550 -hollomon_n 0.223";
+    for seed in [1, 2] {
+        let file = curve(&folder, seed, hidden);
+        let results = folder.join(format!("seed-{seed}"));
+        let ended = program(1, &results, &format!("{law} {search} -identify {file}"));
+        assert_eq!(ended.code, Some(1), "{}", ended.text());
+        assert!(ended.says("converged: "), "{}", ended.stdout);
+        let found = json(&results.join("identification.json"));
+        assert_eq!(found["converged"], true);
+        assert!(found["runs"].as_u64().unwrap() <= 15);
+        assert!(found["distance"].as_f64().unwrap() <= 0.1);
+        let off = off(&found, &[0.1342, 550.0, 0.223]);
+        assert!(off.iter().all(|off| off.abs() < 3.0), "{off:?}");
+        assert_eq!(found["parameters"][0]["identified"], true);
+        assert_eq!(found["parameters"][2]["identified"], false);
+    }
+}
+
 #[test]
 fn what_the_curve_cannot_tell_is_said() {
     let folder = scratch("identify-weak");
@@ -154,7 +181,7 @@ fn a_start_that_cannot_be_run_and_runs_that_are_used_up_are_said() {
     assert_eq!(ended.stderr.matches("ssnp155: ").count(), 1);
     let ended = program(1, &folder.join("short"), &format!("{search} -most_runs 1"));
     assert_eq!(ended.code, Some(1), "{}", ended.text());
-    assert!(ended.says("the runs that -most_runs allows are used up"));
+    assert!(ended.says("not converged: the runs that -most_runs allows are used up"));
 }
 
 const DESIGN: &str = "-design 100 -stroke 17 -time_load 537";

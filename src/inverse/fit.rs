@@ -75,29 +75,36 @@ pub(super) fn fit(search: &Rc<RefCell<Search>>, near: f64) -> Result<Ended, Inve
     let mut tao = Tao::new(&alone)?;
     tao.set_variable_bounds(&lower, &upper)?;
     let shared = Rc::clone(search);
-    let template = Vector::new(&alone, rows)?;
+    // Below the residuals zeros, which the curvature beyond Gauss and Newton's belongs to.
+    let all_rows = rows + 2 * columns;
+    let template = Vector::new(&alone, all_rows)?;
     tao.set_residual(&template, move |x, r| {
         let at = x.read()?.to_vec();
         let mut search = shared.borrow_mut();
-        let fit = search.at(&at)?.ok_or(Failure::Domain)?;
-        if fit.way_left() <= near {
+        search.at(&at)?.ok_or(Failure::Domain)?;
+        let fit = search.known(&at).ok_or(Failure::Domain)?;
+        if search.way_left(fit) <= near {
             return Err(InverseError::Near.into());
         }
-        r.write()?.copy_from_slice(&fit.residual);
+        let mut r = r.write()?;
+        r.fill(0.0);
+        r[..fit.residual.len()].copy_from_slice(&fit.residual);
         Ok(())
     })?;
-    let (m, n) = (rows as i32, columns as i32);
+    let (m, n) = (all_rows as i32, columns as i32);
     let at_row: Vec<i32> = (0..m).flat_map(|row| (0..n).map(move |_| row)).collect();
     let at_column: Vec<i32> = (0..m).flat_map(|_| 0..n).collect();
-    let matrix = Matrix::rectangular_from_coo(&alone, [rows, columns], &at_row, &at_column)?;
+    let matrix = Matrix::rectangular_from_coo(&alone, [all_rows, columns], &at_row, &at_column)?;
     let shared = Rc::clone(search);
     tao.set_residual_jacobian(matrix, move |x, matrix| {
         let at = x.read()?.to_vec();
-        let mut search = shared.borrow_mut();
+        let search = shared.borrow();
         let fit = search
-            .at(&at)?
+            .known(&at)
             .ok_or("a derivative where there is no run")?;
-        Ok(matrix.set_values_coo(&fit.entries())?)
+        let mut entries = fit.entries();
+        entries.extend(search.around(fit).rows());
+        Ok(matrix.set_values_coo(&entries)?)
     })?;
     tao.set_gradient_tolerance(GRADIENT_TOLERANCE)?;
     tao.set_from_options()?;

@@ -55,6 +55,8 @@ pub(super) struct Compared {
 pub(super) struct Identification {
     pub measured_curve: String,
     pub ended: String,
+    /// Whether the least sum of squares is near enough.
+    pub converged: bool,
     pub runs: usize,
     pub seconds: f64,
     pub best_run: String,
@@ -201,11 +203,12 @@ impl Identification {
             uncertainty_N: point.uncertainty,
             computed_N: point.force + residual * point.uncertainty,
         };
-        let distance = best.way_left();
+        let distance = search.way_left(best);
         let degrees_of_freedom = points.len() - sought.len();
         Self {
             measured_curve: path.to_owned(),
             ended: ended.sentence(),
+            converged: distance <= FARTHEST,
             runs: search.runs.made(),
             seconds: search.runs.seconds(),
             best_run: best.folder.clone(),

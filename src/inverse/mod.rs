@@ -8,6 +8,7 @@ mod error;
 mod fit;
 mod identification;
 mod least_change;
+mod quadratic;
 mod report;
 mod runs;
 mod search;

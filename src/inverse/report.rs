@@ -48,7 +48,7 @@ pub(super) fn write(
 pub(super) fn text(found: &Identification, folder: &OutputDir) -> String {
     let holds = found.verdicts.all_hold();
     let mut facts = vec![
-        ("search", found.ended.clone()),
+        ("search", how_it_ended(found)),
         (
             "runs",
             format!(
@@ -98,6 +98,14 @@ pub(super) fn interrupted(runs: usize) -> String {
         format!("{runs} begun; a search is not resumed, start it from better values"),
     )];
     banner(Status::Interrupted, "INTERRUPTED", &facts)
+}
+
+fn how_it_ended(found: &Identification) -> String {
+    let way = format!("{} standard errors", number(found.distance));
+    match found.converged {
+        true => format!("converged: {}, {way} away", found.ended),
+        false => format!("not converged: {}; the best fit is {way} away", found.ended),
+    }
 }
 
 fn estimates(parameters: &[Estimate]) -> String {

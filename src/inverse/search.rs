@@ -1,7 +1,7 @@
 //! The weighted residuals of a measured curve and their derivatives, each from whole runs.
 
 use super::InverseError;
-use super::Statistics;
+use super::quadratic::Quadratic;
 use super::runs::{Ran, Runs};
 use super::statistics::dot;
 use crate::case::{MeasuredPoint, Sought};
@@ -54,17 +54,6 @@ impl Fit {
         (0..self.residual.len()).flat_map(row).collect()
     }
 
-    /// How far the least sum of squares is, in standard errors, by the parameters that no bound holds.
-    pub fn way_left(&self) -> f64 {
-        let (at, gradient) = (&self.at, self.gradient());
-        let held =
-            |k: usize| at[k] <= 0.0 && gradient[k] > 0.0 || at[k] >= 1.0 && gradient[k] < 0.0;
-        let free: Vec<usize> = (0..at.len()).filter(|&k| !held(k)).collect();
-        let columns: Vec<Vec<f64>> = free.iter().map(|&k| self.columns[k].clone()).collect();
-        let gradient: Vec<f64> = free.iter().map(|&k| gradient[k]).collect();
-        Statistics::of(&columns).distance(&gradient, 1.0 / LEAST_SINGULAR_VALUE)
-    }
-
     /// Gradient of half of it by the scaled parameters.
     pub fn gradient(&self) -> Vec<f64> {
         let columns = self.columns.iter();
@@ -99,10 +88,27 @@ impl Search {
         parameters.zip(self.runs.start()).map(scaled).collect()
     }
 
+    fn fits(&self) -> impl Iterator<Item = &Fit> {
+        self.tried.iter().filter_map(|tried| tried.fit.as_ref())
+    }
+
+    /// The sum of squares around a fit, by all that was tried.
+    pub fn around(&self, fit: &Fit) -> Quadratic {
+        Quadratic::around(fit, self.fits())
+    }
+
+    /// How far the least sum of squares is from a fit, in standard errors: by the quadratic around it, and at least as far as a run with a
+    /// smaller sum of squares shows.
+    pub fn way_left(&self, fit: &Fit) -> f64 {
+        let least = self.best().map_or(f64::INFINITY, Fit::chi_squared);
+        let excess = (fit.chi_squared() - least).max(0.0);
+        self.around(fit).way().max(excess.sqrt())
+    }
+
     /// The point tried with the least sum of squares.
     pub fn best(&self) -> Option<&Fit> {
-        let fits = self.tried.iter().filter_map(|tried| tried.fit.as_ref());
-        fits.min_by(|one, other| one.chi_squared().total_cmp(&other.chi_squared()))
+        self.fits()
+            .min_by(|one, other| one.chi_squared().total_cmp(&other.chi_squared()))
     }
 
     /// The last point tried.
@@ -120,27 +126,33 @@ impl Search {
     /// # Errors
     /// As [`Runs::next`].
     pub fn at(&mut self, at: &[f64]) -> Result<Option<&Fit>, InverseError> {
-        let known = self.tried.iter().position(|tried| tried.at == at);
-        let place = match known {
-            Some(place) => place,
-            None => {
-                let fit = self.run(at)?;
-                let said = match &fit {
-                    Some(fit) => {
-                        let mean = fit.chi_squared() / self.measured.len() as f64;
-                        format!("  misfit {}\n", number(mean.sqrt()))
-                    }
-                    None => "  not solved to its end\n".to_owned(),
-                };
-                self.runs.show(&said);
-                self.tried.push(Tried {
-                    at: at.to_vec(),
-                    fit,
-                });
-                self.tried.len() - 1
-            }
-        };
-        Ok(self.tried[place].fit.as_ref())
+        if !self.tried.iter().any(|tried| tried.at == at) {
+            let fit = self.run(at)?;
+            self.tried.push(Tried {
+                at: at.to_vec(),
+                fit,
+            });
+            let said = match self.last() {
+                Some(fit) => {
+                    let mean = fit.chi_squared() / self.measured.len() as f64;
+                    let way = self.way_left(fit);
+                    format!(
+                        "  misfit {}, way left {}\n",
+                        number(mean.sqrt()),
+                        number(way)
+                    )
+                }
+                None => "  not solved to its end\n".to_owned(),
+            };
+            self.runs.show(&said);
+        }
+        Ok(self.known(at))
+    }
+
+    /// The fit at a point that was tried.
+    pub fn known(&self, at: &[f64]) -> Option<&Fit> {
+        let tried = self.tried.iter().find(|tried| tried.at == at)?;
+        tried.fit.as_ref()
     }
 
     fn run(&mut self, at: &[f64]) -> Result<Option<Fit>, InverseError> {

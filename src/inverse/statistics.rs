@@ -84,14 +84,6 @@ impl Statistics {
     pub fn correlation(&self, i: usize, k: usize) -> f64 {
         self.covariance[i][k] / (self.covariance[i][i] * self.covariance[k][k]).sqrt()
     }
-
-    /// How far the best values are from here by the linear model, in standard errors of the worst direction; `gradient` is
-    /// that of half the sum of squares. Directions whose standard error is above `longest` count as if it were that.
-    pub fn distance(&self, gradient: &[f64], longest: f64) -> f64 {
-        let along = |(s, v): (&f64, &Vec<f64>)| dot(v, gradient) / s.max(1.0 / longest);
-        let along = self.singular_values.iter().zip(&self.directions).map(along);
-        along.map(|step| step * step).sum::<f64>().sqrt()
-    }
 }
 
 #[cfg(test)]
@@ -150,12 +142,5 @@ mod tests {
         let errors = Statistics::of(&columns).standard_errors();
         assert!(errors[0].is_infinite() && errors[1].is_infinite());
         assert!((errors[2] - 0.1).abs() < 1e-14);
-    }
-
-    #[test]
-    fn the_distance_to_the_minimum_is_in_standard_errors() {
-        // One parameter with the standard error 1/5, three standard errors away: gradient = 25 * 0.6.
-        let statistics = Statistics::of(&[vec![3.0, 4.0]]);
-        assert!((statistics.distance(&[15.0], 1.0) - 3.0).abs() < 1e-14);
     }
 }
