@@ -7,8 +7,8 @@
 Runs of each case, all to full withdrawal: `reference` on the finest mesh, with twice the elements in both directions of `coarse`, which
 has the mesh of inputs/released.opts; and `steps` like `coarse` with another longest step (6 instead of 9 ms; with friction on the way
 back 0.5 instead of 0.25). A bar is |reference - coarse| + |steps - coarse|: the whole of what mesh, contact points and steps still
-change, not an extrapolated share of it. With REUSE=1 a run that is there is not made again. The program is target/release/ssnp155, or $SSNP155; writing needs
-scripts/requirements.txt.
+change, not an extrapolated share of it. With REUSE=1 a run that is there is not made again. The program is target/release/ssnp155,
+or $SSNP155; writing needs scripts/requirements.txt. The fields of the reference with friction take 5 GB.
 """
 import csv
 import datetime

@@ -5,11 +5,11 @@
   scripts/released.py -friction_coefficient 0.1342 [OPTION ...]    with friction
 
 The base is inputs/released.opts. Without friction the tools vanish at full stroke, and the way back is left out: it changes nothing.
-With friction inputs/released-friction.opts says why the way back is a tenth of the stroke in short steps, at whose end the tools vanish. A row
-says where the yielding ends, and a run that still yields at the end of its way is refused; the row "all the way out" is full
-withdrawal. OPTIONS go to every run after those of the base, before what a run changes. Tables are Markdown on standard output. The program is
-target/release/ssnp155, or $SSNP155. Results stay in results-released-study/; with REUSE=1 a run that is there is not made again,
-and with ONLY=WORD,WORD only the base and the runs named WORD or WORD-... are made.
+With friction inputs/released-friction.opts says why the way back is a tenth of the stroke in short steps, at whose end the tools
+vanish. A row says where the yielding ends, and a run that still yields at the end of its way is refused; the row "all the way out" is
+full withdrawal. OPTIONS go to every run after those of the base, before what a run changes. Tables are Markdown on standard output. The
+program is target/release/ssnp155, or $SSNP155. Results stay in results-released-study/; with REUSE=1 a run that is there is not made
+again, and with ONLY=WORD,WORD only the base and the runs named WORD or WORD-... are made.
 """
 import csv
 import json
@@ -45,8 +45,8 @@ CHANGES += [
     ("points-10", "10 Gauss points through each element", through(10)),
     ("points-15", "15 Gauss points through each element", through(15)),
     ("along-3", "3 Gauss points along each element", ["-quadrature", "3"]),
-    ("along-3-340-4", "... 340 x 4 elements, 6 contact points", ["-quadrature", "3", *mesh(340, 4), POINTS, "6"]),
-    ("along-3-340-8", "... 340 x 8 elements, 6 contact points", ["-quadrature", "3", *mesh(340, 8), POINTS, "6"]),
+    ("fine-340-4", "... on 340 x 4 elements, 6 contact points", ["-quadrature", "3", *mesh(340, 4), POINTS, "6"]),
+    ("fine-340-8", "... on 340 x 8 elements, 6 contact points", ["-quadrature", "3", *mesh(340, 8), POINTS, "6"]),
     ("mesh-170-3", "170 x 3 elements, 10 points through each", [*mesh(170, 3), *through(10)]),
     ("mesh-170-6", "170 x 6 elements, 5 points through each", [*mesh(170, 6), *through(5)]),
     ("mesh-170-8", "170 x 8 elements, 4 points through each", [*mesh(170, 8), *through(4)]),
