@@ -4,11 +4,11 @@
   scripts/reference.py run [CASE[:RUN] ...]     makes the runs, in results-reference/; CASE: frictionless or friction
   scripts/reference.py write                    writes the files from them
 
-Runs of each case, all to full withdrawal: `reference` on the finest mesh, `coarse` on that of inputs/released.opts, and `steps` like
-`coarse` with another longest step (6 instead of 9 ms; with friction on the way back 2 instead of 2.5). A bar is
-|reference - coarse| + |steps - coarse|: the whole of what mesh, contact points and steps still change, not an extrapolated share of
-it. With REUSE=1 a run that is there is not made again. The program is target/release/ssnp155, or $SSNP155; writing needs
-scripts/requirements.txt.
+Runs of each case, all to full withdrawal: `reference` on the finest mesh, with twice the elements in both directions of `coarse`, which
+has the mesh of inputs/released.opts; and `steps` like `coarse` with another longest step (6 instead of 9 ms; with friction on the way
+back 0.5 instead of 0.25). A bar is |reference - coarse| + |steps - coarse|: the whole of what mesh, contact points and steps still
+change, not an extrapolated share of it. With REUSE=1 a run that is there is not made again. The program is target/release/ssnp155,
+or $SSNP155; writing needs scripts/requirements.txt. The fields of the reference with friction take 5 GB.
 """
 import csv
 import datetime
@@ -23,18 +23,21 @@ PROGRAM = os.environ.get("SSNP155", str(ROOT / "target/release/ssnp155"))
 RESULTS = ROOT / "results-reference"
 DATA = ROOT / "docs/reference"
 CASES = {"frictionless": "inputs/ssnp155-springback.opts", "friction": "inputs/ssnp155-friction-springback.opts"}
-FINEST = ["-sheet_nx", "340", "-contact_points_per_edge", "8"]
+FINEST = ["-sheet_nx", "340", "-sheet_ny", "8", "-contact_points_per_edge", "8"]
 # Every half millimetre down: steps end there, so nothing is interpolated on the way down.
 REPORTED = ["-report_strokes", ",".join(f"{0.5 * k:g}" for k in range(1, 57))]
 VARIANTS = {"reference": FINEST, "coarse": [], "steps": ["-dt_max", "6"]}
-# With friction the sheet yields again 1.2 to 1.5 mm after the punch has turned, and steps of 9 ms there are worth 0.15 degrees.
-BACK = {"reference": "400", "coarse": "400", "steps": "500"}
+# With friction the sheet yields again until the punch is 1.35 mm back, and a longer step sees the end of that earlier: 0.05 degrees
+# for each millisecond. So the way back has equal steps of 0.25 ms, and of 0.5 for the bar.
+BACK = {"reference": "4000", "coarse": "4000", "steps": "2000"}
 QUANTITIES = [("force_N", "force of the whole sheet", "%.3f"), ("dy_A_punch_mm", "DY of A, punch side", "%.5f"),
               ("dy_A_sheet_mm", "DY of A, sheet side", "%.5f"), ("angle_deg", "angle between the arms", "%.4f")]
 # Sections through the thickness: middle of the sheet, the bend, the end of the bend at the shoulder; mm from the middle.
 SECTIONS = [0, 15, 30]
 # Force of the punch, N, from which the sheet is held.
 LEAST_FORCE = 0.01
+# Travel of the punch between two rows of contact regions, mm; steps on the way back are shorter.
+APART = 0.05
 # Share of the largest pressure from which a contact point carries.
 CARRIES = 1e-6
 CODE_ASTER = ROOT / "inputs/reference/code_aster-15.2-frictionless.csv"
@@ -148,16 +151,19 @@ def contact_regions(case):
     stroke, down, back = (float(options[name]) for name in ("stroke", "time_load", "time_unload"))
     fields = Fields(RESULTS / f"{case}-reference" / "contact.vtkhdf")
     apart = 1.01 * float(options["sheet_length"]) / 2 / float(options["sheet_nx"])
-    rows = []
+    rows, before = [], None
     for time in fields.times:
         # When the punch has left the sheet, what touches where is rounding.
         if at(history_rows, time, "force_N") < LEAST_FORCE:
             continue
+        travel = stroke * time / down if time <= down else stroke * (1.0 - (time - down) / back)
+        if before is not None and time > down and abs(travel - before) < APART:
+            continue
+        before = travel
         points, arrays = fields.at(time)
         pressure = arrays["contact_pressure"]
         # Open points keep multipliers of the size of rounding.
         least = CARRIES * max(pressure.max(), 1e-300)
-        travel = stroke * time / down if time <= down else stroke * (1.0 - (time - down) / back)
         for face, height in [("punch", float(options["sheet_thickness"])), ("die", 0.0)]:
             here = [k for k in range(len(points)) if abs(points[k][1] - height) < 1e-9 and pressure[k] > least]
             places = sorted(float(points[k][0]) for k in here)

@@ -95,7 +95,8 @@ fn every_case_can_be_resumed() {
         let text = std::fs::read_to_string(&path).unwrap();
         let file = format!("-options_file {}", path.to_str().unwrap());
         // Equal steps would be as many as in the whole run.
-        let fewer = if text.contains("fixed_steps_load 900") {
+        let many = ["-fixed_steps_load 900", "-fixed_steps_unload 400"];
+        let fewer = if many.iter().any(|steps| text.contains(steps)) {
             "-fixed_steps_load 10 -fixed_steps_unload 4"
         } else {
             ""
