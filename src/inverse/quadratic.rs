@@ -135,11 +135,12 @@ fn bounded_step(hessian: &DMatrix<f64>, gradient: &DVector<f64>, at: &[f64]) -> 
         for (i, &k) in free.iter().enumerate() {
             step[k] += way * further[i];
         }
-        if let Some((k, bound, share)) = first
-            && share < 1.0
-        {
-            (step[k], held[k]) = (bound, true);
-            continue;
+        match first {
+            Some((k, bound, share)) if share < 1.0 => {
+                (step[k], held[k]) = (bound, true);
+                continue;
+            }
+            _ => {}
         }
         let slope = gradient + hessian * &step;
         let inwards = |k: &usize| held[*k] && (slope[*k] < 0.0) == (step[*k] + at[*k] <= 0.5);
