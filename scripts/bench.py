@@ -27,7 +27,7 @@ def run(name, options, ranks=1, **environment):
     folder = RESULTS / name
     folder.mkdir(parents=True, exist_ok=True)
     log = folder / "log.txt"
-    command = [str(PROGRAM), "-options_file", "inputs/ssnp155.opts", *options, "-output_dir", str(folder),
+    command = [str(PROGRAM), "-options_file", "inputs/ssnp155.opts", *options, "-overwrite", "-output_dir", str(folder),
                "-log_view", f":{log}"]
     if ranks > 1:
         command = ["mpirun", "-n", str(ranks), *command]
