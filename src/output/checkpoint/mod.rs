@@ -44,7 +44,7 @@ pub fn write(
     made?;
     for old in complete(folder).into_iter().skip(KEPT) {
         // One too many does no harm.
-        let _ = fs::remove_dir_all(old);
+        let _ = discard(&old);
     }
     Ok(())
 }
@@ -77,6 +77,14 @@ fn fill_and_rename(
         path.parent().map_or(Ok(()), sync)
     };
     rename().map_err(failed)
+}
+
+/// Removes a checkpoint under another name: a kill in between must not leave half of it under its own.
+fn discard(path: &Path) -> std::io::Result<()> {
+    let replaced = with_ending(path, REPLACED);
+    let _ = fs::remove_dir_all(&replaced);
+    fs::rename(path, &replaced)?;
+    fs::remove_dir_all(replaced)
 }
 
 fn with_ending(path: &Path, ending: &str) -> PathBuf {
@@ -114,12 +122,16 @@ fn named(folder: &Path, fits: impl Fn(&str) -> bool) -> Vec<PathBuf> {
 /// # Errors
 /// [`OutputError::Write`] if one cannot be removed.
 pub fn remove_newer(folder: &Path, step: Option<u64>) -> Result<(), OutputError> {
-    let newer = named(folder, |name| match name.parse::<u64>() {
-        Ok(number) => step.is_none_or(|step| number > step),
-        Err(_) => name.ends_with(UNFINISHED) || name.ends_with(REPLACED),
-    });
-    for path in newer {
+    let leftover = |name: &str| name.ends_with(UNFINISHED) || name.ends_with(REPLACED);
+    let newer = |name: &str| {
+        let number = name.parse::<u64>();
+        number.is_ok_and(|number| step.is_none_or(|step| number > step))
+    };
+    for path in named(folder, leftover) {
         fs::remove_dir_all(&path).map_err(|error| OutputError::write(&path, error))?;
+    }
+    for path in named(folder, newer) {
+        discard(&path).map_err(|error| OutputError::write(&path, error))?;
     }
     Ok(())
 }
