@@ -56,7 +56,6 @@ mod error;
 mod factorization;
 mod guard;
 mod handle;
-mod kept;
 mod ksp;
 mod matrix;
 mod placeholder;
