@@ -20,7 +20,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     })
 }
 
-/// Writes a value as JSON, as [`write`] does. Numbers that are not finite become `null`.
+/// Writes a value as JSON, as [`write()`] does. Numbers that are not finite become `null`.
 pub(crate) fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), OutputError> {
     let mut text =
         serde_json::to_vec_pretty(value).map_err(|error| OutputError::write(path, error))?;

@@ -5,13 +5,16 @@
 mod benchmark;
 mod corners;
 mod crossing;
+mod distance;
+mod foot;
 mod motion;
 mod outline;
 mod piece;
 mod profile;
 
 pub use benchmark::{die, punch};
+pub use distance::Distance;
 pub use motion::{Motion, PunchMotion};
 pub use outline::{Bend, Corner, FirstTouch, Outline, OutlineError, ToolSide};
-pub use piece::{Distance, Piece};
+pub use piece::Piece;
 pub use profile::{DistanceSlope, Profile, ProfileError, ProfileSlope};

@@ -4,7 +4,9 @@ mod slope;
 
 pub use slope::{DistanceSlope, ProfileSlope};
 
-use super::piece::{Distance, End, Piece};
+use super::distance::Distance;
+use super::foot::Foot;
+use super::piece::{End, Piece};
 use crate::plane::{Vector, dot};
 
 /// Where the next piece may begin, as a share of the largest coordinate or of a millimetre, whichever is more.
@@ -58,6 +60,8 @@ pub enum ProfileError {
 pub struct Profile {
     /// At least one.
     pieces: Vec<Piece>,
+    /// The same, ready to be asked.
+    feet: Vec<Foot>,
     /// Arc length at the start of each piece, mm.
     arc_starts: Vec<f64>,
     /// Both ends of each piece.
@@ -104,6 +108,7 @@ impl Profile {
             ends[later][0].normal = normal;
         }
         Self {
+            feet: pieces.iter().map(Foot::of).collect(),
             pieces,
             arc_starts,
             ends,
@@ -112,28 +117,32 @@ impl Profile {
 
     /// Signed distance of `x` (mm) to the closest piece.
     pub fn distance(&self, x: Vector) -> Distance {
-        let last = self.pieces.len() - 1;
-        let mut best = Distance::NOWHERE;
-        let mut consider = |mut candidate: Distance, arc_start: f64| {
-            candidate.arc_length += arc_start;
+        let last = self.feet.len() - 1;
+        let (mut best, mut nearest) = (f64::INFINITY, (0, None));
+        let mut consider = |value: f64, place| {
             // A point that is not a number keeps a distance that is none.
-            if best.value.abs() <= candidate.value.abs() {
+            if best <= value.abs() {
                 return;
             }
-            best = candidate;
+            (best, nearest) = (value.abs(), place);
         };
-        for (i, piece) in self.pieces.iter().enumerate() {
-            let start = self.arc_starts[i];
-            match piece.distance(x, i == 0, i == last) {
-                Some(distance) => consider(distance, start),
+        for (i, foot) in self.feet.iter().enumerate() {
+            match foot.value(x, i == 0, i == last) {
+                Some(value) => consider(value, (i, None)),
                 None => {
-                    for end in &self.ends[i] {
-                        consider(end.distance(x), start);
+                    for (k, end) in self.ends[i].iter().enumerate() {
+                        consider(end.value(x), (i, Some(k)));
                     }
                 }
             }
         }
-        best
+        let (piece, end) = nearest;
+        let mut distance = match end {
+            None => self.feet[piece].distance(x),
+            Some(end) => self.ends[piece][end].distance(x),
+        };
+        distance.arc_length += self.arc_starts[piece];
+        distance
     }
 
     /// The profile as a polyline with at most `spacing` (mm) between points, for pictures. The middle

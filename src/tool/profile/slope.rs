@@ -2,7 +2,8 @@
 
 use super::Profile;
 use crate::plane::{Vector, dot};
-use crate::tool::piece::{Distance, Piece};
+use crate::tool::distance::Distance;
+use crate::tool::piece::Piece;
 
 /// How a profile moves with a parameter.
 #[derive(Clone, Debug)]
