@@ -43,6 +43,7 @@ const FUNCTIONS: &[&str] = &[
     "Mat(FactorGetError|FactorClearError)",
     "MatCreateShell|MatShellSetOperation",
     "Mat(FactorSetSchurIS|FactorCreateSchurComplement|SetOptionsPrefixFactor)",
+    "Mat(FactorGetSchurComplement|FactorRestoreSchurComplement|SetFactorType|SetOperation)",
     "Mat(CholeskyFactorSymbolic|CholeskyFactorNumeric|DenseGetArrayRead|DenseRestoreArrayRead|DenseGetLDA)",
     "MatMumpsSetIcntl",
     "Mat(CreateDense|DenseGetArray|DenseRestoreArray|GetSize|GetLocalSize)",

@@ -7,8 +7,8 @@ use petsc_sys as sys;
 use crate::{
     error::{Error, Result, check},
     matrix::MatrixRef,
-    session::{Keep, c_string, has_external_package, keep, mpi_has_ended},
-    vector::{VectorRef, index},
+    session::{Keep, has_external_package, keep, mpi_has_ended},
+    vector::VectorRef,
 };
 
 /// How a numeric factorisation ended.
@@ -41,11 +41,11 @@ pub enum FactorKind {
 /// The symbolic analysis is made once; [`Factorization::factor`] repeats the numeric part only.
 /// MUMPS reads its options (`-mat_mumps_icntl_…`, behind the prefix given) at construction.
 pub struct Factorization {
-    raw: sys::Mat,
-    mumps: bool,
+    pub(crate) raw: sys::Mat,
+    pub(crate) mumps: bool,
     kind: FactorKind,
     /// Unknowns that are not eliminated.
-    kept: usize,
+    pub(crate) kept: usize,
     status: Cell<Option<FactorStatus>>,
     _keep: Keep,
 }
@@ -61,49 +61,7 @@ impl Factorization {
         Ok(this)
     }
 
-    /// Analyses the pattern of a matrix on one rank, of which the unknowns `kept` are not eliminated: what
-    /// is left for them is [`Factorization::schur_complement`], and [`Factorization::solve`] solves for the
-    /// others with these held at zero.
-    ///
-    /// # Errors
-    /// If MUMPS is missing, the matrix is distributed, or the analysis fails.
-    pub fn keeping(
-        matrix: &MatrixRef,
-        kind: FactorKind,
-        kept: &[i32],
-        prefix: &str,
-    ) -> Result<Self> {
-        let prefix = c_string(prefix)?;
-        // SAFETY: a live matrix and a C string, which PETSc copies.
-        check(unsafe { sys::MatSetOptionsPrefixFactor(matrix.raw(), prefix.as_ptr()) })?;
-        let mut this = Self::begin(matrix, kind)?;
-        if !this.mumps {
-            return Err(without_mumps());
-        }
-        this.kept = kept.len();
-        let mut set = ptr::null_mut();
-        // SAFETY: a live factor; the index set copies the array, is referred to by nobody after the call
-        // that copies it in turn, and is destroyed once.
-        unsafe {
-            check(sys::ISCreateGeneral(
-                mpi_sys::RSMPI_COMM_SELF,
-                index(kept.len())?,
-                kept.as_ptr(),
-                sys::PETSC_COPY_VALUES,
-                &mut set,
-            ))?;
-            let taken = check(sys::MatFactorSetSchurIS(this.raw, set));
-            check(sys::ISDestroy(&mut set))?;
-            taken?;
-        }
-        this.analyse(matrix)?;
-        // Solves are those of the eliminated unknowns alone.
-        // SAFETY: a live MUMPS factor.
-        check(unsafe { sys::MatMumpsSetIcntl(this.raw, 26, 0) })?;
-        Ok(this)
-    }
-
-    fn begin(matrix: &MatrixRef, kind: FactorKind) -> Result<Self> {
+    pub(crate) fn begin(matrix: &MatrixRef, kind: FactorKind) -> Result<Self> {
         let mumps = has_external_package("mumps")?;
         let mut this = Factorization {
             raw: ptr::null_mut(),
@@ -130,7 +88,7 @@ impl Factorization {
         Ok(this)
     }
 
-    fn analyse(&self, matrix: &MatrixRef) -> Result<()> {
+    pub(crate) fn analyse(&self, matrix: &MatrixRef) -> Result<()> {
         let (raw, defaults) = (matrix.raw(), ptr::null());
         let (mut rows, mut columns) = (ptr::null_mut(), ptr::null_mut());
         if !self.mumps {
@@ -179,47 +137,32 @@ impl Factorization {
             sys::MAT_FACTOR_OUTMEMORY => FactorStatus::OutOfMemory,
             _ => FactorStatus::Other,
         };
+        if self.kept > 0 && status == FactorStatus::Ready {
+            self.hand_over_kept()?;
+        }
         self.status.set(Some(status));
         Ok(status)
     }
 
-    /// What the eliminated unknowns leave for the kept ones, row by row in the order they were given.
-    ///
-    /// # Errors
-    /// If there are no usable factors or the length of `out` is not the square of the kept unknowns.
-    pub fn schur_complement(&self, out: &mut [f64]) -> Result<()> {
-        if self.status.get() != Some(FactorStatus::Ready) || out.len() != self.kept * self.kept {
-            return Err(Error::usage("no Schur complement of this size"));
-        }
-        let (mut matrix, mut data, mut stride) = (ptr::null_mut(), ptr::null(), 0);
-        // SAFETY: a live MUMPS factor; PETSc writes a new dense matrix of kept x kept numbers, stored by
-        // columns, which is destroyed here; its array is read between loan and return.
-        unsafe {
-            let none = ptr::null_mut();
-            check(sys::MatFactorCreateSchurComplement(
-                self.raw,
-                &mut matrix,
-                none,
-            ))?;
-            check(sys::MatDenseGetLDA(matrix, &mut stride))?;
-            check(sys::MatDenseGetArrayRead(matrix, &mut data))?;
-            let stride = usize::try_from(stride).unwrap_or(self.kept);
-            for (i, row) in out.chunks_exact_mut(self.kept.max(1)).enumerate() {
-                for (j, value) in row.iter_mut().enumerate() {
-                    *value = *data.add(j * stride + i);
-                }
-            }
-            check(sys::MatDenseRestoreArrayRead(matrix, &mut data))?;
-            check(sys::MatDestroy(&mut matrix))
-        }
-    }
-
-    /// Solves `A x = b` with the last factors. Collective.
+    /// Solves `A x = b` with the last factors; unknowns that were [kept](Factorization::keeping) are held at zero.
+    /// Collective.
     ///
     /// # Errors
     /// If there are no usable factors or the layouts do not fit.
     pub fn solve(&self, b: &VectorRef, x: &mut VectorRef) -> Result<()> {
-        if self.status.get() != Some(FactorStatus::Ready) {
+        self.solve_with(b, x, |kept| {
+            kept.fill(0.0);
+            Ok(())
+        })
+    }
+
+    pub(crate) fn is_ready(&self) -> bool {
+        self.status.get() == Some(FactorStatus::Ready)
+    }
+
+    /// The solve itself.
+    pub(crate) fn substitute(&self, b: &VectorRef, x: &mut VectorRef) -> Result<()> {
+        if !self.is_ready() {
             return Err(Error::usage("the matrix is not factorised"));
         }
         // SAFETY: live objects; PETSc checks the layouts.
@@ -227,7 +170,7 @@ impl Factorization {
     }
 }
 
-fn without_mumps() -> Error {
+pub(crate) fn without_mumps() -> Error {
     Error::usage("PETSc was built without MUMPS, which this needs")
 }
 

@@ -56,6 +56,7 @@ mod error;
 mod factorization;
 mod guard;
 mod handle;
+mod kept;
 mod ksp;
 mod matrix;
 mod placeholder;

@@ -8,7 +8,7 @@
 //! [ A_ΓI  A_ΓΓ ]      S x_Γ = b_Γ - Σ A_ΓI A_II⁻¹ b_I,   A_II x_I = b_I - A_IΓ x_Γ
 //! ```
 //!
-//! (Przemieniecki 1963, AIAA J. 1, 138-147). A sheet is long and thin: Γ is a few cuts through its thickness, S is small
+//! (Przemieniecki 1963, AIAA J. 1, 138-147), by one forward and one backward substitution with what is shared in between. A sheet is long and thin: Γ is a few cuts through its thickness, S is small
 //! and dense, and all the rest needs no message. The same numbers come out in every run, which the dynamic scheduling of a
 //! parallel multifrontal solver does not promise.
 
@@ -52,7 +52,6 @@ struct Shared {
 struct Work {
     right_side: Vector,
     solution: Vector,
-    product: Vector,
     shared_part: Vec<f64>,
     shared_right_side: Vector,
     shared_solution: Vector,
@@ -98,7 +97,6 @@ impl Substructures {
             work: Work {
                 right_side: Vector::new(&alone, all)?,
                 solution: Vector::new(&alone, all)?,
-                product: Vector::new(&alone, all)?,
                 shared_part: vec![0.0; count],
                 shared_right_side: Vector::new(&alone, count)?,
                 shared_solution: Vector::new(&alone, count)?,
@@ -144,56 +142,37 @@ impl Substructures {
         let work = &mut self.work;
         let mut right_side = work.right_side.write()?;
         right_side.copy_from_slice(b);
-        for shared in &self.shared {
+        for shared in self.shared.iter().filter(|shared| !shared.owned) {
             right_side[shared.local] = 0.0;
         }
         drop(right_side);
-        self.inner.solve(&work.right_side, &mut work.solution)?;
-        clear(&mut work.solution, &self.shared)?;
-        self.matrix.mult(&work.solution, &mut work.product)?;
-
-        work.shared_part.fill(0.0);
-        let product = work.product.read()?;
-        for shared in &self.shared {
-            let of_owner = if shared.owned { b[shared.local] } else { 0.0 };
-            work.shared_part[shared.place] = of_owner - product[shared.local];
-        }
-        drop(product);
-        let mut sum = work.shared_right_side.write()?;
-        self.comm
-            .all_reduce_into(&work.shared_part[..], &mut sum[..], SystemOperation::sum());
-        drop(sum);
-        self.schur_factors
-            .solve(&work.shared_right_side, &mut work.shared_solution)?;
-
-        work.solution.set_all(0.0)?;
-        let (found, mut solution) = (work.shared_solution.read()?, work.solution.write()?);
-        for shared in &self.shared {
-            solution[shared.local] = found[shared.place];
-        }
-        drop(solution);
-        self.matrix.mult(&work.solution, &mut work.product)?;
-        work.right_side.axpy(-1.0, &work.product)?;
-        clear(&mut work.right_side, &self.shared)?;
-        self.inner.solve(&work.right_side, &mut work.solution)?;
-        let mut solution = work.solution.write()?;
-        for shared in &self.shared {
-            solution[shared.local] = found[shared.place];
-        }
-        let mut out = out.write()?;
+        self.inner
+            .solve_with(&work.right_side, &mut work.solution, |kept| {
+                work.shared_part.fill(0.0);
+                for (shared, value) in self.shared.iter().zip(&*kept) {
+                    work.shared_part[shared.place] = *value;
+                }
+                let mut sum = work.shared_right_side.write()?;
+                self.comm.all_reduce_into(
+                    &work.shared_part[..],
+                    &mut sum[..],
+                    SystemOperation::sum(),
+                );
+                drop(sum);
+                self.schur_factors
+                    .solve(&work.shared_right_side, &mut work.shared_solution)?;
+                let found = work.shared_solution.read()?;
+                for (shared, value) in self.shared.iter().zip(kept) {
+                    *value = found[shared.place];
+                }
+                Ok(())
+            })?;
+        let (solution, mut out) = (work.solution.read()?, out.write()?);
         for &(local, place) in &self.owned {
             out[place] = solution[local];
         }
         Ok(())
     }
-}
-
-fn clear(vector: &mut Vector, shared: &[Shared]) -> petsc::Result<()> {
-    let mut values = vector.write()?;
-    for shared in shared {
-        values[shared.local] = 0.0;
-    }
-    Ok(())
 }
 
 /// The shared unknowns of this rank, and the number of those of all ranks.
