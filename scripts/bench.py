@@ -215,7 +215,7 @@ def large():
                  "-condensed_sub_pc_type", "cholesky", "-condensed_sub_pc_factor_mat_solver_type", "mumps"]
     runs = [
         ("MUMPS", run("large-mumps", start)),
-        ("MUMPS, no scaling (`inputs/large.opts`)", run("large-opts", [*start, "-options_file", "inputs/large.opts"])),
+        ("MUMPS with its scaling", run("large-scaled", [*start, "-condensed_mat_mumps_icntl_8", "77"])),
         ("MUMPS, block low-rank, 1e-12", run("large-blr", [*start, "-condensed_mat_mumps_icntl_35", "1",
                                                           "-condensed_mat_mumps_cntl_7", "1e-12"])),
         ("MUMPS, out of core", run("large-core", [*start, "-condensed_mat_mumps_icntl_22", "1"])),

@@ -48,6 +48,8 @@ const PACKAGE_DEFAULTS: &[(&str, &str)] = &[
     // No permutation by the entries' sizes: the analysis must not depend on the matrix it happens to see first, which
     // after a restart is another one. MUMPS would choose none by itself on the benchmark.
     (condensed!("mat_mumps_icntl_6"), "0"),
+    // No scaling: every unknown is a displacement and every row a force, so the entries are of one size already.
+    (condensed!("mat_mumps_icntl_8"), "0"),
 ];
 
 /// For a PETSc without MUMPS, on one rank.
