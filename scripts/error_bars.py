@@ -17,12 +17,13 @@ and steps are those to `gauss`, `spacing` and `steps`; scatter is the largest di
 integration see one and the same error, so the larger counts. docs/error-bars.md says why, and how good the bars are.
 
 With --effectivity a reference of twice the elements in each direction and half the step is made as well, and each bar is
-compared with the distance to it. Tables are Markdown on standard output; results-error-bars/error-bars.csv holds the
-parts. The program is target/release/ssnp155, or $SSNP155; $ERROR_BARS is another folder for the results. With REUSE=1 a run
-that is there is not made again.
+compared with the distance to it, place by place, and the bars of a part of the path with its distances. Tables are
+Markdown on standard output; results-error-bars/error-bars.csv holds the parts. The program is target/release/ssnp155, or
+$SSNP155; $ERROR_BARS is another folder for the results. With REUSE=1 a run that is there is not made again.
 """
 import csv
 import json
+import math
 import os
 import pathlib
 import subprocess
@@ -39,6 +40,10 @@ MOST_POINTS_PER_EDGE = 24
 MORE_THROUGH = {"2": "4", "3": "5", "4": "7", "5": "10", "7": "15"}
 QUANTITIES = {"force_N": "force N", "dy_A_sheet_mm": "DY of A mm", "angle_deg": "angle deg"}
 ANGLE = "angle deg"
+# Places on the first part of the way back, where the force falls, % of the stroke.
+WAY_BACK = [2, 4, 6, 8, 10]
+# Share of the stroke up to which the path is smooth on any mesh.
+EASY = 20 / 28.5
 PARTS = ["mesh", "integration", "spacing", "steps", "scatter"]
 
 
@@ -111,8 +116,9 @@ def values(options, result):
     reported = [float(word) for word in options["report_strokes"].split(",") if word != "none"]
     times = {f"d = {depth:g} mm": load * depth / stroke for depth in reported if depth < stroke}
     times["full stroke"] = load
-    if back > 0.1:
-        times["10 % unloaded"] = load + unload * 0.1 / back
+    for percent in WAY_BACK:
+        if back > percent / 100:
+            times[f"{percent} % unloaded"] = load + unload * percent / 100 / back
     if back > 0.0:
         times["withdrawn" if back == 1.0 else f"{100 * back:g} % unloaded"] = load + unload
     found = {}
@@ -161,6 +167,33 @@ def table(heads, rows):
     print(flush=True)
 
 
+def stage(place, stroke):
+    """The part of the path that a place belongs to."""
+    if place.startswith("d = "):
+        depth = float(place.split()[2])
+        return f"down to {stroke * EASY:.0f} mm" if depth <= stroke * EASY else "down from there"
+    if place == "full stroke":
+        return "down from there"
+    return "way back" if place.endswith("% unloaded") else "released"
+
+
+def norms(found, distances, stroke):
+    """Effectivity of a quantity along a part of the path: norm of its bars over norm of its distances.
+
+    A distance that passes through zero somewhere, as any does that has two signs, gives that place an effectivity without
+    a bound; norms are what an estimate can be held to.
+    """
+    squares = {}
+    for (place, quantity), distance in distances.items():
+        sums = squares.setdefault((stage(place, stroke), quantity), [0, 0.0, 0.0])
+        sums[0] += 1
+        sums[1] += found[place, quantity]["bar"] ** 2
+        sums[2] += distance**2
+    return [[*key, str(places), two_digits(math.sqrt(bar / places)), two_digits(math.sqrt(distance / places)),
+             f"{math.sqrt(bar / distance):.2f}" if distance > 0.0 else "-"]
+            for key, (places, bar, distance) in squares.items()]
+
+
 def main(arguments):
     judged = arguments[:1] == ["--effectivity"]
     extra = arguments[1:] if judged else arguments
@@ -180,11 +213,15 @@ def main(arguments):
     if judged:
         finer = mesh(2 * int(options["sheet_nx"]), 2 * int(options["sheet_ny"]))
         reference = values(options, run("reference", [*extra, *finer, *scaled_steps(options, 0.5)]))
+        distances = {key: abs(value[key] - reference[key]) for key in value}
         heads += ["distance to the reference", "effectivity"]
         for key, row in shown.items():
-            distance = abs(value[key] - reference[key])
+            distance = distances[key]
             row += [two_digits(distance), f"{found[key]['bar'] / distance:.2f}" if distance > 0.0 else "-"]
     table(heads, shown.values())
+    if judged:
+        table(["part of the path", "quantity", "places", "bars, root mean square", "distances", "effectivity"],
+              norms(found, distances, float(options["stroke"])))
 
 
 if __name__ == "__main__":

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Builds, tests and runs the benchmark on several platforms, each in a bare root of its own, and prints one table.
-#   scripts/platforms.sh [here] [bookworm] [trixie] [newest] [mpich]     the last four unless named
+#   scripts/platforms.sh [here] [bookworm] [trixie] [newest] [mpich] [3.19] ...     bookworm to mpich unless named
 #   here               this machine as it is
 #   bookworm, trixie   Debian 12 and 13 with their packages
 #   newest             the newest PETSc 3.26 from its source package (PyPI), without MUMPS, in the root of trixie
 #   mpich              the same built with MPICH, in a Debian 13 of its own
+#   3.19 to 3.26       that PETSc from its source package, without MUMPS, in the root of bookworm
 # Needs root, debootstrap, a Rust toolchain and pip. From the environment:
 #   PLATFORM_ROOTS     where the roots are and stay, 4 GB each: target/platforms unless given
 #   PLATFORM_MIRROR    Debian's mirror; the first one of this machine unless given
@@ -17,7 +18,7 @@ project=$PWD
 mkdir -p "${PLATFORM_ROOTS:=target/platforms}"
 roots=$(cd "$PLATFORM_ROOTS" && pwd)
 mirror=${PLATFORM_MIRROR:-$(apt-get indextargets --format '$(REPO_URI)' | head -n 1)}
-petsc_release='petsc==3.26.*'
+newest=3.26
 results=$project/results-platforms
 mkdir -p "$results"
 
@@ -60,21 +61,22 @@ debian() {
     inside "$root" <<<'cd "$PROJECT" && bash scripts/install.sh'
 }
 
-# The newest PETSc, built without MUMPS and without Fortran by the root's mpicc into its /opt/petsc, once.
-newest() {
-    local root=$1
-    [ ! -e "$roots/$root/opt/petsc/lib/libpetsc.so" ] || return 0
+# A release of PETSc, built without MUMPS and without Fortran by the root's mpicc into its /opt/petsc-RELEASE, once.
+from_source() {
+    local root=$1 release=$2
+    [ ! -e "$roots/$root/opt/petsc-$release/lib/libpetsc.so" ] || return 0
     [ -x "$roots/pip/bin/pip" ] || python3 -m venv "$roots/pip"
     "$roots/pip/bin/pip" install --quiet setuptools wheel numpy
+    rm -rf "$roots/$root/opt/src"
     "$roots/pip/bin/pip" download --quiet --no-deps --no-build-isolation --no-binary petsc \
-        --dest "$roots/$root/opt/src" "$petsc_release"
-    inside "$root" <<'END'
+        --dest "$roots/$root/opt/src" "petsc==$release.*"
+    inside "$root" RELEASE="$release" <<'END'
 DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends python3 make >/dev/null
 cd /opt/src
 tar xzf petsc-3.*.tar.gz
 cd petsc-3.*/
-export PETSC_DIR=$PWD PETSC_ARCH=newest
-python3 ./configure --prefix=/opt/petsc --with-cc=mpicc --with-cxx=0 --with-fc=0 --with-debugging=0 --with-x=0 \
+export PETSC_DIR=$PWD PETSC_ARCH=optimised
+python3 ./configure --prefix="/opt/petsc-$RELEASE" --with-cc=mpicc --with-cxx=0 --with-fc=0 --with-debugging=0 --with-x=0 \
     --with-shared-libraries=1 COPTFLAGS=-O2 --with-blaslapack-lib="-llapack -lblas"
 make -j"$(nproc)" all
 make install
@@ -131,17 +133,22 @@ for name in "$@"; do
         ;;
     newest)
         debian trixie trixie
-        newest trixie
-        measure newest trixie PETSC_DIR=/opt/petsc
+        from_source trixie "$newest"
+        measure newest trixie PETSC_DIR="/opt/petsc-$newest"
         ;;
     mpich)
         debian trixie-mpich trixie
         mpich trixie-mpich
-        newest trixie-mpich
-        measure mpich trixie-mpich PETSC_DIR=/opt/petsc HDF5_DIR=/usr/lib/x86_64-linux-gnu/hdf5/mpich
+        from_source trixie-mpich "$newest"
+        measure mpich trixie-mpich PETSC_DIR="/opt/petsc-$newest" HDF5_DIR=/usr/lib/x86_64-linux-gnu/hdf5/mpich
+        ;;
+    3.19 | 3.2[0-6])
+        debian bookworm bookworm
+        from_source bookworm "$name"
+        measure "$name" bookworm PETSC_DIR="/opt/petsc-$name"
         ;;
     *)
-        echo "platforms: no platform is called $name; there are here, bookworm, trixie, newest and mpich" >&2
+        echo "platforms: no platform is called $name; there are here, bookworm, trixie, newest, mpich and 3.19 to 3.26" >&2
         exit 2
         ;;
     esac

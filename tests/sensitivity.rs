@@ -6,7 +6,7 @@ mod program;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use program::{Ended, history, run, scratch, summary};
+use program::{history, run_into, scratch, summary};
 use ssnp155::case::Case;
 
 /// To d = 20 mm by equal steps; the tolerance takes the solves down to rounding, which the differences divide by the share.
@@ -30,17 +30,8 @@ const QUANTITIES: [&str; 3] = ["force_N", "angle_deg", "dy_A_sheet_mm"];
 
 type Table = BTreeMap<String, Vec<f64>>;
 
-fn start(folder: &Path, ranks: usize, parts: &[&str]) -> Ended {
-    let mut words: Vec<&str> = parts
-        .iter()
-        .flat_map(|part| part.split_whitespace())
-        .collect();
-    words.extend(["-output_dir", folder.to_str().unwrap()]);
-    run(ranks, 300, &words)
-}
-
 fn finish(folder: &Path, ranks: usize, parts: &[&str]) {
-    let ended = start(folder, ranks, parts);
+    let ended = run_into(folder, ranks, parts);
     assert_eq!(ended.code, Some(0), "{parts:?}: {}", ended.text());
 }
 
@@ -249,7 +240,7 @@ fn a_restart_has_the_same_bits() {
     let folder = scratch("sensitivity-restart");
     let (whole, broken) = (folder.join("whole"), folder.join("broken"));
     finish(&whole, 1, &[SHORT, LIST]);
-    start(
+    run_into(
         &broken,
         1,
         &[SHORT, LIST, "-ts_max_steps 14 -checkpoint_every 7"],
@@ -264,7 +255,7 @@ fn a_restart_has_the_same_bits() {
         assert_eq!(one[key], other[key], "{key}");
     }
     // Two ranks go on with what one has kept.
-    start(
+    run_into(
         &broken,
         1,
         &[
@@ -288,8 +279,8 @@ fn a_restart_has_the_same_bits() {
 #[test]
 fn a_checkpoint_with_other_derivatives_is_refused() {
     let folder = scratch("sensitivity-refused");
-    start(&folder, 1, &[SHORT, "-ts_max_steps 4 -checkpoint_every 4"]);
-    let ended = start(&folder, 1, &[SHORT, LIST, "-restart"]);
+    run_into(&folder, 1, &[SHORT, "-ts_max_steps 4 -checkpoint_every 4"]);
+    let ended = run_into(&folder, 1, &[SHORT, LIST, "-restart"]);
     assert_eq!(ended.code, Some(2), "{}", ended.text());
     assert!(
         ended.stderr.contains("carries no derivatives"),
@@ -297,7 +288,7 @@ fn a_checkpoint_with_other_derivatives_is_refused() {
         ended.stderr
     );
     assert_eq!(ended.stderr.trim().lines().count(), 1);
-    start(
+    run_into(
         &folder,
         1,
         &[
@@ -306,7 +297,7 @@ fn a_checkpoint_with_other_derivatives_is_refused() {
             "-ts_max_steps 4 -checkpoint_every 4 -overwrite",
         ],
     );
-    let ended = start(&folder, 1, &[SHORT, "-sensitivity die_radius -restart"]);
+    let ended = run_into(&folder, 1, &[SHORT, "-sensitivity die_radius -restart"]);
     assert_eq!(ended.code, Some(2), "{}", ended.text());
     assert!(
         ended.stderr.contains("sheet_thickness,die_shoulder_radius"),

@@ -6,7 +6,7 @@ mod tool_theory;
 
 use std::path::Path;
 
-use program::{Ended, history, run, scratch, summary};
+use program::{history, run_into, scratch, summary};
 use tool_theory::Bending;
 
 const FASTEST: &str = "-options_file inputs/fastest.opts";
@@ -14,15 +14,6 @@ const FILES: &str =
     "-punch_profile inputs/tools/benchmark-punch.csv -die_profile inputs/tools/benchmark-die.csv";
 /// The benchmark on a coarse mesh.
 const SMALL: &str = "-sheet_nx 40 -sheet_ny 2 -output_every 0";
-
-fn start(folder: &Path, ranks: usize, parts: &[&str]) -> Ended {
-    let mut words: Vec<&str> = parts
-        .iter()
-        .flat_map(|part| part.split_whitespace())
-        .collect();
-    words.extend(["-output_dir", folder.to_str().unwrap()]);
-    run(ranks, 300, &words)
-}
 
 fn rows(folder: &Path) -> String {
     std::fs::read_to_string(folder.join("history.csv")).unwrap()
@@ -35,8 +26,8 @@ fn the_benchmarks_tools_from_files_give_the_same_bits() {
     for (ranks, more, least) in [(1, &whole[..], 100), (2, "-ts_max_steps 40", 40)] {
         let folder = scratch("tools-same");
         let (own, files) = (folder.join("own"), folder.join("files"));
-        let own_end = start(&own, ranks, &[SMALL, more]);
-        let files_end = start(&files, ranks, &[SMALL, more, FILES]);
+        let own_end = run_into(&own, ranks, &[SMALL, more]);
+        let files_end = run_into(&files, ranks, &[SMALL, more, FILES]);
         assert_eq!(own_end.code, files_end.code, "{}", files_end.text());
         assert!(rows(&own).lines().count() > least, "{}", own_end.text());
         assert!(
@@ -88,7 +79,7 @@ fn agrees_with_a_beam(folder: &Path, bending: &Bending, degrees: &[f64]) {
 fn air_bending_agrees_with_a_beam_in_force_angle_and_springback() {
     let folder = scratch("tools-air");
     let mesh = "-sheet_nx 30 -output_every 0";
-    let ended = start(
+    let ended = run_into(
         &folder,
         1,
         &["-options_file inputs/air-bending.opts", FASTEST, mesh],
@@ -140,7 +131,7 @@ fn air_bending_agrees_with_a_beam_in_force_angle_and_springback() {
 fn a_v_die_agrees_with_a_beam_before_it_closes_and_with_its_own_angle_after() {
     let folder = scratch("tools-v");
     let mesh = "-sheet_nx 30 -output_every 0";
-    let ended = start(
+    let ended = run_into(
         &folder,
         1,
         &["-options_file inputs/v-die.opts", FASTEST, mesh],
@@ -175,13 +166,13 @@ fn a_restart_with_another_outline_is_refused_and_with_the_same_one_elsewhere_is_
     let small =
         "-sheet_nx 20 -sheet_ny 2 -stroke 0.5 -time_load 16 -unload_fraction 0 -output_every 0";
     let wide = "-penetration_limit 0.02 -punch_profile";
-    start(
+    run_into(
         &results,
         1,
         &[small, wide, &tool, "-ts_max_steps 3 -checkpoint_every 1"],
     );
     std::fs::write(&tool, outline.replace("23.5,60", "23.5,61")).unwrap();
-    let refused = start(&results, 1, &[small, wide, &tool, "-restart"]);
+    let refused = run_into(&results, 1, &[small, wide, &tool, "-restart"]);
     assert_eq!(refused.code, Some(2), "{}", refused.text());
     assert!(
         refused.stderr.contains("-punch_profile was the outline of")
@@ -189,14 +180,14 @@ fn a_restart_with_another_outline_is_refused_and_with_the_same_one_elsewhere_is_
         "{}",
         refused.stderr
     );
-    let benchmark = start(&results, 1, &[small, "-penetration_limit 0.02 -restart"]);
+    let benchmark = run_into(&results, 1, &[small, "-penetration_limit 0.02 -restart"]);
     assert_eq!(benchmark.code, Some(2), "{}", benchmark.text());
     assert!(
         benchmark.stderr.contains("and is the outline of benchmark"),
         "{}",
         benchmark.stderr
     );
-    let resumed = start(&results, 1, &[small, wide, &copy, "-restart"]);
+    let resumed = run_into(&results, 1, &[small, wide, &copy, "-restart"]);
     assert_eq!(resumed.code, Some(0), "{}", resumed.text());
     assert!(resumed.stdout.contains("resumed from"));
 }
@@ -204,7 +195,7 @@ fn a_restart_with_another_outline_is_refused_and_with_the_same_one_elsewhere_is_
 #[test]
 fn a_dry_run_says_and_draws_where_the_tools_are() {
     let folder = scratch("tools-dry");
-    let ended = start(&folder, 2, &["-options_file inputs/v-die.opts -dry_run"]);
+    let ended = run_into(&folder, 2, &["-options_file inputs/v-die.opts -dry_run"]);
     assert_eq!(ended.code, Some(0), "{}", ended.text());
     for part in [
         "3 corners of inputs/tools/v-punch.csv, sharpest radius that sticks out 2 mm, touches first at x = 0 mm",

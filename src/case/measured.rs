@@ -1,12 +1,18 @@
 //! A measured force against the stroke of the punch, as a table.
 
-use std::path::Path;
-
+use super::columns::{Columns, Line, Refusal};
 use super::error::CaseError;
 use crate::text::{self, shortened, show_real};
 
-/// The columns in any order; their names hold the units.
-const COLUMNS: [&str; 3] = ["stroke_mm", "force_N", "uncertainty_N"];
+const COLUMNS: Columns<3> = Columns {
+    names: ["stroke_mm", "force_N", "uncertainty_N"],
+    header: "; convert to these units and name the columns so",
+    short_line: "the line has another number of columns than the header; each needs a comma",
+    allows: |_, number| match number.is_finite() {
+        true => Ok(()),
+        false => Err("a finite number such as 180.5".to_owned()),
+    },
+};
 /// Points closer than this (mm) would only shorten the time steps.
 const CLOSEST: f64 = 1e-3;
 
@@ -20,8 +26,6 @@ pub struct MeasuredPoint {
     /// Standard uncertainty of the force, N.
     pub uncertainty: f64,
 }
-
-type Refusal = (Option<u64>, String);
 
 /// The points of the file at `path`, going down to at most `stroke` (mm), more than `parameters` of them.
 ///
@@ -37,16 +41,7 @@ pub fn read_measured(
         line,
         problem,
     };
-    let text = text::read(Path::new(path)).map_err(|reason| {
-        let needed = format!(
-            "specify the path of a CSV file with the header {}",
-            COLUMNS.join(",")
-        );
-        blame((
-            None,
-            format!("the file cannot be read ({reason}); {needed}"),
-        ))
-    })?;
+    let text = COLUMNS.text(path).map_err(blame)?;
     let points = points(&text, stroke).map_err(blame)?;
     if points.len() <= parameters {
         return Err(blame((
@@ -61,59 +56,15 @@ pub fn read_measured(
 }
 
 fn points(text: &str, greatest: f64) -> Result<Vec<MeasuredPoint>, Refusal> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut table = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_reader(text.as_bytes());
-    let malformed = |error: csv::Error| {
-        let line = error
-            .position()
-            .map(|position| text::line_of(text, position));
-        (
-            line,
-            "the line has another number of columns than the header; each needs a comma".to_owned(),
-        )
-    };
-    let header = table.headers().map_err(malformed)?.clone();
-    let place = |name: &str| header.iter().position(|word| word == name);
-    let (Some(stroke), Some(force), Some(uncertainty), 3) = (
-        place(COLUMNS[0]),
-        place(COLUMNS[1]),
-        place(COLUMNS[2]),
-        header.len(),
-    ) else {
-        let given = shortened(&header.iter().collect::<Vec<_>>().join(","));
-        let problem = format!(
-            "the header is '{given}' instead of {}; convert to these units and name the columns so",
-            COLUMNS.join(",")
-        );
-        return Err((None, problem));
-    };
     let mut points: Vec<MeasuredPoint> = Vec::new();
-    for row in table.records() {
-        let row = row.map_err(malformed)?;
-        let line = row.position().map(|position| text::line_of(text, position));
-        let number = |column: usize| {
-            let text = row.get(column).unwrap_or_default();
-            let value = text.parse().ok().filter(|value: &f64| value.is_finite());
-            value.ok_or_else(|| {
-                let name = header.get(column).unwrap_or_default();
-                (
-                    line,
-                    format!(
-                        "{name} '{}' is not a finite number such as 180.5",
-                        shortened(text)
-                    ),
-                )
-            })
-        };
+    for Line { line, numbers } in COLUMNS.lines(text)? {
+        let [stroke, force, uncertainty] = numbers;
         let point = MeasuredPoint {
-            stroke: number(stroke)?,
-            force: number(force)?,
-            uncertainty: number(uncertainty)?,
+            stroke,
+            force,
+            uncertainty,
         };
-        check(point, points.last(), greatest).map_err(|problem| (line, problem))?;
+        check(point, points.last(), greatest).map_err(|problem| (Some(line), problem))?;
         points.push(point);
     }
     Ok(points)

@@ -5,6 +5,7 @@
 //! An option of ours is declared once, in `table.rs`; help, documentation, checks and errors follow from there.
 
 mod arguments;
+mod columns;
 mod error;
 mod geometry;
 mod hardening;

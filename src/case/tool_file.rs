@@ -1,15 +1,30 @@
 //! The outline of a tool as a table: the corners of its right half and the radii they are rounded with.
 
-use std::path::Path;
-
+use super::columns::{Columns, Line, Refusal};
 use super::error::CaseError;
-use crate::text::{self, shortened, show_real};
+use crate::text::{shortened, show_real};
 use crate::tool::{Corner, Outline, ToolSide};
 
-/// The columns in any order; their names hold the units.
-const COLUMNS: [&str; 3] = ["x_mm", "y_mm", "radius_mm"];
 /// Longest coordinate and radius, mm: those of the options.
 const GREATEST: f64 = 1e5;
+/// The corners of the right half and the radii.
+const COLUMNS: Columns<3> = Columns {
+    names: ["x_mm", "y_mm", "radius_mm"],
+    header: ": the corners of the tool's right half from x = 0 outwards, and the radius each is rounded with",
+    short_line: "the line has another number of columns than the header; each needs a comma, and a sharp corner the \
+                 radius 0",
+    allows: |column, number| {
+        let least = if column == 2 { 0.0 } else { -GREATEST };
+        match (least..=GREATEST).contains(&number) {
+            true => Ok(()),
+            false => Err(format!(
+                "a number such as 23.5 with {} <= number <= {}",
+                show_real(least),
+                show_real(GREATEST)
+            )),
+        }
+    },
+};
 
 /// A tool from a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,9 +36,6 @@ pub struct ToolFile {
     /// Line of the file of each corner.
     lines: Vec<u64>,
 }
-
-/// The line to blame, if there is one, and a sentence.
-type Refusal = (Option<u64>, String);
 
 impl ToolFile {
     /// Reads the tool on this side of the sheet that `option` names.
@@ -41,16 +53,7 @@ impl ToolFile {
             line,
             problem,
         };
-        let text = text::read(Path::new(path)).map_err(|reason| {
-            let needed = format!(
-                "specify the path of a CSV file with the header {}",
-                COLUMNS.join(",")
-            );
-            blame((
-                None,
-                format!("the file cannot be read ({reason}); {needed}"),
-            ))
-        })?;
+        let text = COLUMNS.text(path).map_err(blame)?;
         let (lines, corners) = corners(&text).map_err(blame)?;
         let outline = Outline::new(side, &corners).map_err(|error| {
             let line = |corner: Option<usize>| lines.get(corner?).copied();
@@ -83,65 +86,13 @@ impl ToolFile {
 
 /// The corners of a table, each with its line.
 fn corners(text: &str) -> Result<(Vec<u64>, Vec<Corner>), Refusal> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut table = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_reader(text.as_bytes());
-    let malformed = |error: csv::Error| {
-        let line = error
-            .position()
-            .map(|position| text::line_of(text, position));
-        let problem = "the line has another number of columns than the header; each needs a comma, and a sharp corner the radius 0";
-        (line, problem.to_owned())
-    };
-    let header = table.headers().map_err(malformed)?.clone();
-    let place = |name: &str| header.iter().position(|word| word == name);
-    let (Some(x), Some(y), Some(radius), 3) = (
-        place(COLUMNS[0]),
-        place(COLUMNS[1]),
-        place(COLUMNS[2]),
-        header.len(),
-    ) else {
-        let given = shortened(&header.iter().collect::<Vec<_>>().join(","));
-        let problem = format!(
-            "the header is '{given}' instead of {}: the corners of the tool's right half from x = 0 outwards, and the radius \
-             each is rounded with",
-            COLUMNS.join(",")
-        );
-        return Err((None, problem));
-    };
-    let (mut lines, mut corners) = (Vec::new(), Vec::new());
-    for row in table.records() {
-        let row = row.map_err(malformed)?;
-        let line = row
-            .position()
-            .map_or(0, |position| text::line_of(text, position));
-        let number = |column: usize, least: f64| {
-            let text = row.get(column).unwrap_or_default();
-            let name = header.get(column).unwrap_or_default();
-            let value = text
-                .parse()
-                .ok()
-                .filter(|value: &f64| (least..=GREATEST).contains(value));
-            value.ok_or_else(|| {
-                let range = format!("{} <= number <= {}", show_real(least), show_real(GREATEST));
-                (
-                    Some(line),
-                    format!(
-                        "{name} '{}' is not a number such as 23.5 with {range}",
-                        shortened(text)
-                    ),
-                )
-            })
-        };
-        corners.push(Corner {
-            x: [number(x, -GREATEST)?, number(y, -GREATEST)?],
-            radius: number(radius, 0.0)?,
-        });
-        lines.push(line);
-    }
-    Ok((lines, corners))
+    let lines = COLUMNS.lines(text)?.into_iter();
+    Ok(lines
+        .map(|Line { line, numbers }| {
+            let [x, y, radius] = numbers;
+            (line, Corner { x: [x, y], radius })
+        })
+        .unzip())
 }
 
 #[cfg(test)]
@@ -167,7 +118,7 @@ mod tests {
         #[test]
         fn any_text_is_read_or_refused(text in any::<String>()) {
             let _ = corners(&text);
-            let _ = corners(&format!("{}\n{text}", COLUMNS.join(",")));
+            let _ = corners(&format!("{}\n{text}", COLUMNS.names.join(",")));
         }
 
         #[test]

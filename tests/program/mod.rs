@@ -60,7 +60,15 @@ pub fn run(ranks: usize, seconds: u32, words: &[&str]) -> Ended {
     run_in(Path::new("."), None, ranks, seconds, words)
 }
 
-/// The same in a folder, and with a variable in the environment.
+/// The same with words in several parts, and their results in `folder`; within five minutes.
+pub fn run_into(folder: &Path, ranks: usize, parts: &[&str]) -> Ended {
+    let words = parts.iter().flat_map(|part| part.split_whitespace());
+    let mut words: Vec<&str> = words.collect();
+    words.extend(["-output_dir", folder.to_str().unwrap()]);
+    run(ranks, 300, &words)
+}
+
+/// As [`run`] in a folder, and with a variable in the environment.
 pub fn run_in(
     folder: &Path,
     environment: Option<(&str, &str)>,
