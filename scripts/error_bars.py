@@ -40,8 +40,6 @@ MOST_POINTS_PER_EDGE = 24
 MORE_THROUGH = {"2": "4", "3": "5", "4": "7", "5": "10", "7": "15"}
 QUANTITIES = {"force_N": "force N", "dy_A_sheet_mm": "DY of A mm", "angle_deg": "angle deg"}
 ANGLE = "angle deg"
-# Places on the first part of the way back, where the force falls, % of the stroke.
-WAY_BACK = [2, 4, 6, 8, 10]
 # Share of the stroke up to which the path is smooth on any mesh.
 EASY = 20 / 28.5
 PARTS = ["mesh", "integration", "spacing", "steps", "scatter"]
@@ -116,9 +114,8 @@ def values(options, result):
     reported = [float(word) for word in options["report_strokes"].split(",") if word != "none"]
     times = {f"d = {depth:g} mm": load * depth / stroke for depth in reported if depth < stroke}
     times["full stroke"] = load
-    for percent in WAY_BACK:
-        if back > percent / 100:
-            times[f"{percent} % unloaded"] = load + unload * percent / 100 / back
+    if back > 0.1:
+        times["10 % unloaded"] = load + unload * 0.1 / back
     if back > 0.0:
         times["withdrawn" if back == 1.0 else f"{100 * back:g} % unloaded"] = load + unload
     found = {}

@@ -8,6 +8,7 @@
 #   3.19 to 3.26       that PETSc from its source package, without MUMPS, in the root of bookworm
 # Needs root, debootstrap, a Rust toolchain and pip. From the environment:
 #   PLATFORM_ROOTS     where the roots are and stay, 4 GB each: target/platforms unless given
+#   CARGO_PROFILE_...  as cargo takes them; CARGO_PROFILE_RELEASE_LTO=off builds sooner
 #   PLATFORM_MIRROR    Debian's mirror; the first one of this machine unless given
 # Each root takes some minutes the first time. Results: results-platforms/NAME/, and the table of docs/platforms.md.
 set -euo pipefail
@@ -45,6 +46,7 @@ inside() {
         exec chroot "$root" env -i HOME=/root LC_ALL=C.UTF-8 \
             CARGO_HOME=/opt/cargo RUSTUP_HOME=/opt/rustup \
             PATH=/opt/cargo/bin:/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
+            $(env | grep "^CARGO_PROFILE_") \
             RUSTUP_TOOLCHAIN="${RUSTUP_TOOLCHAIN:-stable}" SSL_CERT_FILE=/etc/ssl/certs/ca-certificates.crt \
             CARGO_HTTP_CAINFO=/etc/ssl/certs/ca-certificates.crt PROJECT=/source "$@" bash -euo pipefail -c "$script"
     ' inside "$root" "$project" "$script" "$@" </dev/null

@@ -33,9 +33,30 @@ fn bars_hold_the_distance_to_a_finer_solution() {
         "{}",
         String::from_utf8_lossy(&ended.stderr)
     );
+    // Place by place; behind an empty line the same as norms along the parts of the path.
+    let (places, norms) = text.split_once("\n\n").unwrap();
+    let rows = |table: &str| -> Vec<(String, Vec<String>)> {
+        let cells = |line: &str| {
+            line.trim_matches('|')
+                .split('|')
+                .map(|cell| cell.trim().to_owned())
+                .collect()
+        };
+        table
+            .lines()
+            .skip(2)
+            .filter(|line| !line.is_empty())
+            .map(|line| (line.to_owned(), cells(line)))
+            .collect()
+    };
+    let norms = rows(norms);
+    for (line, cells) in &norms {
+        let effectivity: f64 = cells[5].parse().unwrap();
+        assert!((0.7..=3.0).contains(&effectivity), "{line}");
+    }
+    assert_eq!(norms.len(), 4, "down, and the angle without tools: {text}");
     let mut angles = 0;
-    for line in text.lines().skip(2).filter(|line| !line.is_empty()) {
-        let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
+    for (line, cells) in rows(places) {
         let effectivity: f64 = cells[9].parse().unwrap_or_else(|_| panic!("{line}"));
         // The goal of docs/error-bars.md. A distance can be small by accident, so a bar may be larger than it; that of
         // an angle, which has no teeth, may not.
