@@ -45,7 +45,6 @@ const FUNCTIONS: &[&str] = &[
     "Mat(FactorSetSchurIS|FactorCreateSchurComplement|SetOptionsPrefixFactor)",
     "Mat(FactorGetSchurComplement|FactorRestoreSchurComplement|SetFactorType|SetOperation)",
     "Mat(CholeskyFactorSymbolic|CholeskyFactorNumeric|DenseGetArrayRead|DenseRestoreArrayRead|DenseGetLDA)",
-    "MatMumpsSetIcntl",
     "Mat(CreateDense|DenseGetArray|DenseRestoreArray|GetSize|GetLocalSize)",
     // Linear solvers.
     "KSP(Create|Destroy|SetOperators|SetFromOptions|SetOptionsPrefix|SetType|GetPC|SetUp|Solve|MatSolve)",

@@ -72,6 +72,17 @@ PetscErrorCode petsc_rs_event_end(PetscLogEvent event)
   return PetscLogEventEnd(event, 0, 0, 0, 0);
 }
 
+/* Not every version has it where PETSc was built without MUMPS. */
+PetscErrorCode petsc_rs_mumps_set_icntl(Mat factor, PetscInt index, PetscInt value)
+{
+#if defined(PETSC_HAVE_MUMPS)
+  return MatMumpsSetIcntl(factor, index, value);
+#else
+  (void)factor, (void)index, (void)value;
+  return PETSC_ERR_SUP;
+#endif
+}
+
 PetscErrorCode petsc_rs_line_search_set_apply(SNESLineSearch search, petsc_rs_search apply, void *context)
 {
 #if PETSC_VERSION_GE(3, 21, 0)

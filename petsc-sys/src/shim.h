@@ -21,5 +21,7 @@ PetscErrorCode petsc_rs_container_get(PetscContainer container, void **content);
 PetscErrorCode petsc_rs_container_set_destroy(PetscContainer container, petsc_rs_destroy destroy);
 PetscErrorCode petsc_rs_event_begin(PetscLogEvent event);
 PetscErrorCode petsc_rs_event_end(PetscLogEvent event);
+/* An error where PETSc was built without MUMPS. */
+PetscErrorCode petsc_rs_mumps_set_icntl(Mat factor, PetscInt index, PetscInt value);
 PetscErrorCode petsc_rs_line_search_set_apply(SNESLineSearch search, petsc_rs_search apply, void *context);
 PetscErrorCode petsc_rs_line_search_get_vi(SNESLineSearch search, petsc_rs_project *project, petsc_rs_norm *norm);

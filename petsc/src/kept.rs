@@ -74,7 +74,7 @@ impl Factorization {
         this.analyse(matrix)?;
         // Forward, the kept unknowns, backward; whatever the options say.
         // SAFETY: a live MUMPS factor.
-        check(unsafe { sys::MatMumpsSetIcntl(this.raw, 26, -1) })?;
+        check(unsafe { sys::petsc_rs_mumps_set_icntl(this.raw, 26, -1) })?;
         Ok(this)
     }
 
