@@ -16,7 +16,7 @@
 //!   the same failing solve is repeated until [`TsRef::set_max_step_rejections`] ends the run
 //!   ([`Ts::START_FORGETS_CUT_BACK`]). To recover, make the first step small enough, or lower the time step
 //!   and solve again after a [`TsReason::DivergedStepRejected`] at step 0.
-//! - Since 3.21 a residual outside its domain is not counted by [`TsRef::snes_failures`].
+//! - Since 3.19 a residual outside its domain is not counted by [`TsRef::snes_failures`].
 //! - The first failed nonlinear solve ends the run unless [`TsRef::set_max_snes_failures`] is -1.
 //! - The default adaptor never makes the step larger again.
 //! - A step is repeated inside PETSc: the pre-*stage* hook runs for each attempt, the pre-*step* hook
