@@ -38,14 +38,11 @@ pub(super) enum Foot {
 impl Foot {
     pub fn of(piece: &Piece) -> Self {
         match *piece {
-            Piece::Segment { start, end } => {
-                let length = piece.length();
-                Self::OnLine {
-                    start,
-                    tangent: [(end[0] - start[0]) / length, (end[1] - start[1]) / length],
-                    length,
-                }
-            }
+            Piece::Segment { start, .. } => Self::OnLine {
+                start,
+                tangent: piece.tangent(0.0),
+                length: piece.length(),
+            },
             Piece::Arc {
                 centre,
                 radius,

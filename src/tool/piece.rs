@@ -138,9 +138,9 @@ impl Piece {
         }
     }
 
-    /// Its end at `share` 0 or 1 of its length.
-    pub(super) fn end(&self, share: f64) -> End {
-        let tangent = match *self {
+    /// The unit vector along the walk at this share of its length.
+    pub(super) fn tangent(&self, share: f64) -> Vector {
+        match *self {
             Piece::Segment { start, end } => {
                 let length = self.length();
                 [(end[0] - start[0]) / length, (end[1] - start[1]) / length]
@@ -150,7 +150,12 @@ impl Piece {
                 let turn = (to - from).signum();
                 [-turn * angle.sin(), turn * angle.cos()]
             }
-        };
+        }
+    }
+
+    /// Its end at `share` 0 or 1 of its length.
+    pub(super) fn end(&self, share: f64) -> End {
+        let tangent = self.tangent(share);
         End {
             x: self.at(share),
             normal: [-tangent[1], tangent[0]],
