@@ -90,8 +90,9 @@ impl KspRef {
         check(unsafe { sys::PCSetType(self.pc()?, name.as_ptr()) })
     }
 
-    /// Prepares for solves with the present values of the matrix: a direct solver factorises, with
-    /// the symbolic part of the last time if the pattern is the same. Collective.
+    /// Prepares for solves with the matrix: a direct solver factorises, with the symbolic part of the last time if the
+    /// pattern is the same. Does nothing a second time, also for other values (the next solve finds them by itself), unless
+    /// the matrix was set again. Collective.
     ///
     /// # Errors
     /// If PETSc fails; a matrix that cannot be used is a [`KspReason`].

@@ -30,9 +30,12 @@ pub(super) struct Condensation {
 
 /// Rows and columns of the condensed matrix's entries as local displacements; a negative row or column
 /// is left out.
+#[derive(Default)]
 pub(super) struct CondensedPattern {
     pub rows: Vec<i32>,
     pub columns: Vec<i32>,
+    /// Which of the mesh's columns of elements, from one end of the sheet to the other, each entry belongs to.
+    pub slices: Vec<usize>,
 }
 
 /// An entry whose column is a prescribed displacement: it goes to the right-hand side.
@@ -75,7 +78,9 @@ impl Condensation {
             .iter()
             .for_each(|s| prescribed[s.unknown] = true);
         let (mut rows, mut columns, mut known) = (Vec::new(), Vec::new(), Vec::new());
-        let mut block = |unknowns: &[usize]| {
+        let mut slices = Vec::new();
+        let slice_of_node = slices_of_nodes(local);
+        let mut block = |unknowns: &[usize], slice| {
             for &row in unknowns {
                 for &column in unknowns {
                     let free = !prescribed[row] && !prescribed[column];
@@ -85,17 +90,18 @@ impl Condensation {
                     }
                     rows.push(if free { row as i32 } else { -1 });
                     columns.push(if free { column as i32 } else { -1 });
+                    slices.push(slice);
                 }
             }
         };
         for nodes in &local.connectivity {
             let unknowns: [usize; 16] = std::array::from_fn(|i| 2 * nodes[i / 2] + i % 2);
-            block(&unknowns);
+            block(&unknowns, slice_of_node[nodes[BOTTOM]]);
         }
         let mut points = Vec::with_capacity(local.contacts.len());
         for (point, contact) in local.contacts.iter().enumerate() {
             let unknowns: [usize; 6] = std::array::from_fn(|i| 2 * contact.nodes[i / 2] + i % 2);
-            block(&unknowns);
+            block(&unknowns, slice_of_node[contact.nodes[2]]);
             points.push(EliminatedPoint {
                 unknowns,
                 prescribed: unknowns.map(|i| prescribed[i]),
@@ -107,6 +113,7 @@ impl Condensation {
         for support in local.supports.iter().filter(|s| local.owned[s.unknown / 2]) {
             rows.push(support.unknown as i32);
             columns.push(support.unknown as i32);
+            slices.push(slice_of_node[support.unknown / 2]);
         }
         let this = Self {
             points,
@@ -114,7 +121,12 @@ impl Condensation {
             values: vec![1.0; rows.len()],
             known,
         };
-        (this, CondensedPattern { rows, columns })
+        let pattern = CondensedPattern {
+            rows,
+            columns,
+            slices,
+        };
+        (this, pattern)
     }
 
     /// Takes over a Jacobian and this rank's active set (ascending global rows). Returns the condensed entries.
@@ -210,6 +222,20 @@ impl EliminatedPoint {
             closure + self.by_complementarity * r[self.position + 1]
         }
     }
+}
+
+/// An element's middle node below, which belongs to one column of elements only.
+const BOTTOM: usize = 4;
+
+/// For each local node a column of elements that it belongs to.
+fn slices_of_nodes(local: &Subdomain) -> Vec<usize> {
+    let mut slices = vec![0; local.nodes.len()];
+    for (nodes, element) in local.connectivity.iter().zip(&local.elements) {
+        for &node in nodes {
+            slices[node] = element % local.problem.mesh.nx;
+        }
+    }
+    slices
 }
 
 fn dot(a: &[f64; 6], b: &[f64; 6]) -> f64 {

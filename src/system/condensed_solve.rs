@@ -6,6 +6,7 @@ use std::cell::RefCell;
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
+use petsc::log::Event;
 use petsc::{Block, FactorKind, Ksp, Matrix, Scatter, Vector, VectorRef};
 
 use super::System;
@@ -25,8 +26,8 @@ pub struct SolverChoice {
 /// Who solves the condensed system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CondensedMethod {
-    /// By substructures where there is more than one rank and little between them, otherwise as
-    /// [`CondensedMethod::Whole`].
+    /// Slices of the sheet by dense matrices, and what is left by a direct solver of PETSc, on several ranks each its own
+    /// part; as [`CondensedMethod::Whole`] where too much lies between the ranks.
     Substructures,
     /// A linear solver of PETSc for the whole matrix.
     Whole,
@@ -39,6 +40,8 @@ pub struct CondensedSolve {
     /// Displacements this rank owns.
     owned: usize,
     parts: RefCell<Parts>,
+    factoring: Event,
+    solving: Event,
 }
 
 /// What changes from solve to solve, allocated once.
@@ -56,7 +59,7 @@ struct Parts {
 enum Solver {
     /// A linear solver of PETSc.
     Whole(Matrix, Ksp),
-    /// Each rank its own elements, and all together what is between them.
+    /// Each rank its own elements slice by slice, and all together what is between them.
     Substructures(Box<Substructures>),
 }
 
@@ -90,6 +93,8 @@ impl CondensedSolve {
             comm: comm.duplicate(),
             owned,
             parts: RefCell::new(parts),
+            factoring: Event::new("SheetFactor")?,
+            solving: Event::new("SheetSolve")?,
         })
     }
 
@@ -99,6 +104,7 @@ impl CondensedSolve {
     /// # Errors
     /// If PETSc fails.
     pub fn factor(&self, jacobian: &JacobianEntries, active: &[i32]) -> petsc::Result<bool> {
+        let _event = self.factoring.begin();
         let Parts {
             condensation,
             solver,
@@ -108,7 +114,7 @@ impl CondensedSolve {
         match solver {
             Solver::Whole(matrix, solver) => {
                 matrix.set_values_coo(values)?;
-                Ok(!solver.set_up()?.is_diverged())
+                factorise(solver, matrix)
             }
             Solver::Substructures(solver) => solver.factor(values),
         }
@@ -120,6 +126,7 @@ impl CondensedSolve {
     /// # Errors
     /// If PETSc fails.
     pub fn solve(&self, r: &VectorRef, step: &mut VectorRef) -> petsc::Result<()> {
+        let _event = self.solving.begin();
         let parts = &mut *self.parts.borrow_mut();
         self.condense(parts, r)?;
         match &mut parts.solver {
@@ -203,7 +210,7 @@ impl CondensedSolve {
     pub fn factor_solver(&self) -> petsc::Result<Option<String>> {
         match &self.parts.borrow().solver {
             Solver::Whole(_, solver) => Ok(solver.factor_solver()?.or(solver.preconditioner()?)),
-            Solver::Substructures(_) => Ok(Some("mumps, substructures".to_owned())),
+            Solver::Substructures(solver) => solver.factor_solver(),
         }
     }
 }
@@ -222,9 +229,10 @@ impl Solver {
         };
         let prefix = choice.options_prefix;
         if choice.method == CondensedMethod::Substructures {
-            if let Some(solver) = Substructures::new(system, &pattern, kind, prefix)? {
-                return Ok(Self::Substructures(Box::new(solver)));
-            }
+            pattern = match Substructures::new(system, pattern, kind, prefix)? {
+                Ok(solver) => return Ok(Self::Substructures(Box::new(solver))),
+                Err(pattern) => pattern,
+            };
         }
         for index in pattern.rows.iter_mut().chain(&mut pattern.columns) {
             *index = usize::try_from(*index).map_or(-1, |local| rows[local]);
@@ -235,15 +243,33 @@ impl Solver {
             &pattern.rows,
             &pattern.columns,
         )?;
-        let mut solver = Ksp::new(system.comm())?;
-        solver.set_options_prefix(prefix)?;
-        solver.set_operator(&matrix)?;
-        solver.set_type("preonly")?;
-        solver.set_preconditioner(match kind {
-            FactorKind::Symmetric => "cholesky",
-            FactorKind::General => "lu",
-        })?;
-        solver.set_from_options()?;
+        let solver = direct_solver(system.comm(), &matrix, kind, prefix)?;
         Ok(Self::Whole(matrix, solver))
     }
+}
+
+/// Lets a solver take over the values of its matrix. Says whether it can be used.
+pub(super) fn factorise(solver: &mut Ksp, matrix: &Matrix) -> petsc::Result<bool> {
+    // Told anew, or it would factorise within the next solve, where a failure comes too late.
+    solver.set_operator(matrix)?;
+    Ok(!solver.set_up()?.is_diverged())
+}
+
+/// A solver of PETSc for this matrix, direct unless the options behind this prefix say otherwise.
+pub(super) fn direct_solver(
+    comm: &SimpleCommunicator,
+    matrix: &Matrix,
+    kind: FactorKind,
+    options_prefix: &str,
+) -> petsc::Result<Ksp> {
+    let mut solver = Ksp::new(comm)?;
+    solver.set_options_prefix(options_prefix)?;
+    solver.set_operator(matrix)?;
+    solver.set_type("preonly")?;
+    solver.set_preconditioner(match kind {
+        FactorKind::Symmetric => "cholesky",
+        FactorKind::General => "lu",
+    })?;
+    solver.set_from_options()?;
+    Ok(solver)
 }

@@ -1,177 +1,160 @@
 //! The condensed system solved by substructures: each rank eliminates what only its own elements touch, and what is left,
 //! the unknowns between the ranks, is solved by all of them alike.
 //!
-//! With I the inner unknowns of a rank and Γ those it shares, its own entries (not summed over the ranks) are
-//!
-//! ```text
-//! [ A_II  A_IΓ ]      S = Σ over ranks of  A_ΓΓ - A_ΓI A_II⁻¹ A_IΓ
-//! [ A_ΓI  A_ΓΓ ]      S x_Γ = b_Γ - Σ A_ΓI A_II⁻¹ b_I,   A_II x_I = b_I - A_IΓ x_Γ
-//! ```
-//!
-//! (Przemieniecki 1963, AIAA J. 1, 138-147), by one forward and one backward substitution with what is shared in between. A sheet is long and thin: Γ is a few cuts through its thickness, S is small
-//! and dense, and all the rest needs no message. The same numbers come out in every run, which the dynamic scheduling of a
-//! parallel multifrontal solver does not promise.
+//! Most of a rank's unknowns are eliminated slice by slice with dense matrices ([`Fronts`]); what is left of them is one
+//! sparse matrix, much smaller, and none of its fronts is tiny. The same numbers come out in every run, which the dynamic
+//! scheduling of a parallel multifrontal solver does not promise.
 
 use mpi::collective::SystemOperation;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, CommunicatorCollectives};
-use petsc::{FactorKind, FactorStatus, Factorization, Matrix, Vector};
+use petsc::{FactorKind, Ksp, Matrix, Vector};
 
 use super::System;
 use super::condensation::CondensedPattern;
+use super::condensed_solve::{direct_solver, factorise};
+use super::fronts::Fronts;
+use super::interface::{Interface, Shared};
 
-/// Beyond this number of shared unknowns the dense S costs more than it saves.
+/// Beyond this number of shared unknowns the dense matrix between the ranks costs more than it saves.
 const MOST_SHARED: usize = 2000;
 
 /// One rank's part of the solve.
 pub(super) struct Substructures {
-    comm: SimpleCommunicator,
-    /// This rank's entries, summed over nobody else's.
+    fronts: Fronts,
+    /// What they leave of this rank's entries, summed over nobody else's.
     matrix: Matrix,
-    inner: Factorization,
-    /// Shared unknowns of this rank: local displacement, place among those of all ranks, and whether this
-    /// rank owns it.
-    shared: Vec<Shared>,
-    /// Owned displacements: local, and place among those owned.
-    owned: Vec<(usize, usize)>,
-    /// This rank's Schur complement and the sum of all ranks', row by row.
-    own_schur: Vec<f64>,
-    part: Vec<f64>,
-    schur: Vec<f64>,
-    schur_matrix: Matrix,
-    schur_factors: Factorization,
-    work: Work,
-}
-
-struct Shared {
-    local: usize,
-    place: usize,
-    owned: bool,
-}
-
-struct Work {
+    rest: Rest,
     right_side: Vector,
     solution: Vector,
-    shared_part: Vec<f64>,
-    shared_right_side: Vector,
-    shared_solution: Vector,
+    /// All local displacements.
+    values: Vec<f64>,
+    /// Local displacements this rank shares but does not own.
+    foreign: Vec<usize>,
+    /// Owned displacements: local, and place among those owned.
+    owned: Vec<(usize, usize)>,
+}
+
+/// Who solves for what the fronts leave.
+enum Rest {
+    /// A solver of PETSc, where there is one rank.
+    Alone(Ksp),
+    /// All ranks.
+    Together(Interface),
 }
 
 impl Substructures {
-    /// For the pattern of this rank's entries in local displacements; none on one rank, where nothing
-    /// would be shared, nor where a rank has nothing of its own or too much is shared. Collective.
+    /// For the pattern of this rank's entries in local displacements; gives it back where a rank has nothing of its own or
+    /// too much is shared. Collective.
     pub(super) fn new(
         system: &System,
-        pattern: &CondensedPattern,
+        pattern: CondensedPattern,
         kind: FactorKind,
         options_prefix: &str,
-    ) -> petsc::Result<Option<Self>> {
-        let (comm, local) = (system.comm(), system.local());
-        let all = 2 * local.nodes.len();
+    ) -> petsc::Result<Result<Self, CondensedPattern>> {
+        let comm = system.comm();
+        let all = 2 * system.local().nodes.len();
         let (shared, count) = shared_unknowns(system);
-        let mut unfit = i32::from(count == 0 || count > MOST_SHARED || shared.len() == all);
+        let mut unfit = i32::from(count > MOST_SHARED || shared.len() == all);
         let mine = unfit;
         comm.all_reduce_into(&mine, &mut unfit, SystemOperation::max());
         if unfit > 0 {
-            return Ok(None);
+            return Ok(Err(pattern));
         }
+        let mut kept = vec![false; all];
+        shared.iter().for_each(|shared| kept[shared.unknown] = true);
+        let foreign = shared.iter().filter(|shared| !shared.owned);
+        let foreign = foreign.map(|shared| shared.unknown).collect();
+
+        let (fronts, pattern) = Fronts::new(pattern, &kept, kind);
+        let size = fronts.left().len();
         let alone = SimpleCommunicator::self_comm();
-        let mut matrix = Matrix::from_coo(&alone, all, &pattern.rows, &pattern.columns)?;
+        let mut matrix = Matrix::from_coo(&alone, size, &pattern.rows, &pattern.columns)?;
         // The analysis wants entries, and must not depend on which: a restart begins with others.
         matrix.set_values_coo(&vec![1.0; pattern.rows.len()])?;
-        let kept: Vec<i32> = shared.iter().map(|shared| shared.local as i32).collect();
-        let inner = Factorization::keeping(&matrix, kind, &kept, options_prefix)?;
-        let full = |index: fn(usize, usize) -> usize| -> Vec<i32> {
-            (0..count * count).map(|k| index(k, count) as i32).collect()
+        let rest = if comm.size() == 1 {
+            Rest::Alone(direct_solver(&alone, &matrix, kind, options_prefix)?)
+        } else {
+            let mut place = vec![0; all];
+            for (new, &old) in fronts.left().iter().enumerate() {
+                place[old] = new;
+            }
+            let mut shared = shared;
+            for shared in &mut shared {
+                shared.unknown = place[shared.unknown];
+            }
+            Rest::Together(Interface::new(
+                comm,
+                &matrix,
+                kind,
+                shared,
+                count,
+                options_prefix,
+            )?)
         };
-        let (rows, columns) = (full(|k, n| k / n), full(|k, n| k % n));
-        let mut schur_matrix = Matrix::from_coo(&alone, count, &rows, &columns)?;
-        schur_matrix.set_values_coo(&vec![1.0; count * count])?;
-        Ok(Some(Self {
-            comm: comm.duplicate(),
-            schur_factors: Factorization::new(&schur_matrix, kind)?,
-            schur_matrix,
-            own_schur: vec![0.0; shared.len() * shared.len()],
-            part: vec![0.0; count * count],
-            schur: vec![0.0; count * count],
-            work: Work {
-                right_side: Vector::new(&alone, all)?,
-                solution: Vector::new(&alone, all)?,
-                shared_part: vec![0.0; count],
-                shared_right_side: Vector::new(&alone, count)?,
-                shared_solution: Vector::new(&alone, count)?,
-            },
+        Ok(Ok(Self {
+            right_side: Vector::new(&alone, size)?,
+            solution: Vector::new(&alone, size)?,
+            values: vec![0.0; all],
+            fronts,
             matrix,
-            inner,
-            shared,
+            rest,
+            foreign,
             owned: owned_unknowns(system),
         }))
     }
 
     /// Factorises for the entries of this rank. Says whether the matrix can be used. Collective.
     pub(super) fn factor(&mut self, values: &[f64]) -> petsc::Result<bool> {
-        self.matrix.set_values_coo(values)?;
-        let ready = self.inner.factor(&self.matrix)? == FactorStatus::Ready;
-        self.part.fill(0.0);
-        if ready {
-            self.inner.schur_complement(&mut self.own_schur)?;
-            let count = self.work.shared_part.len();
-            let rows = self.own_schur.chunks_exact(self.shared.len().max(1));
-            for (row, values) in self.shared.iter().zip(rows) {
-                for (column, value) in self.shared.iter().zip(values) {
-                    self.part[row.place * count + column.place] = *value;
-                }
-            }
-        } else {
-            // Every rank learns of it with the sum.
-            self.part[0] = f64::NAN;
+        let left = self.fronts.eliminate(values);
+        if let Some(left) = left {
+            self.matrix.set_values_coo(left)?;
         }
-        let sum = SystemOperation::sum();
-        self.comm
-            .all_reduce_into(&self.part[..], &mut self.schur[..], sum);
-        if self.schur[0].is_nan() {
-            return Ok(false);
+        let usable = left.is_some();
+        match &mut self.rest {
+            Rest::Alone(solver) => Ok(usable && factorise(solver, &self.matrix)?),
+            Rest::Together(interface) => interface.factor(&self.matrix, usable),
         }
-        self.schur_matrix.set_values_coo(&self.schur)?;
-        Ok(self.schur_factors.factor(&self.schur_matrix)? == FactorStatus::Ready)
     }
 
     /// Solves for the right-hand side `b`, of which this rank knows all its local displacements, and returns
     /// those it owns in `out`. Collective.
     pub(super) fn solve(&mut self, b: &[f64], out: &mut Vector) -> petsc::Result<()> {
-        let work = &mut self.work;
-        let mut right_side = work.right_side.write()?;
-        right_side.copy_from_slice(b);
-        for shared in self.shared.iter().filter(|shared| !shared.owned) {
-            right_side[shared.local] = 0.0;
+        let values = &mut self.values;
+        values.copy_from_slice(b);
+        // Of what is shared the owner brings the right-hand side, and the others what their own parts add.
+        self.foreign
+            .iter()
+            .for_each(|&unknown| values[unknown] = 0.0);
+        self.fronts.forward(values);
+        let mut right_side = self.right_side.write()?;
+        for (value, &unknown) in right_side.iter_mut().zip(self.fronts.left()) {
+            *value = values[unknown];
         }
         drop(right_side);
-        self.inner
-            .solve_with(&work.right_side, &mut work.solution, |kept| {
-                work.shared_part.fill(0.0);
-                for (shared, value) in self.shared.iter().zip(&*kept) {
-                    work.shared_part[shared.place] = *value;
-                }
-                let mut sum = work.shared_right_side.write()?;
-                self.comm.all_reduce_into(
-                    &work.shared_part[..],
-                    &mut sum[..],
-                    SystemOperation::sum(),
-                );
-                drop(sum);
-                self.schur_factors
-                    .solve(&work.shared_right_side, &mut work.shared_solution)?;
-                let found = work.shared_solution.read()?;
-                for (shared, value) in self.shared.iter().zip(kept) {
-                    *value = found[shared.place];
-                }
-                Ok(())
-            })?;
-        let (solution, mut out) = (work.solution.read()?, out.write()?);
+        match &mut self.rest {
+            Rest::Alone(solver) => {
+                solver.solve(&self.right_side, &mut self.solution)?;
+            }
+            Rest::Together(interface) => interface.solve(&self.right_side, &mut self.solution)?,
+        }
+        for (&value, &unknown) in self.solution.read()?.iter().zip(self.fronts.left()) {
+            values[unknown] = value;
+        }
+        self.fronts.backward(values);
+        let mut out = out.write()?;
         for &(local, place) in &self.owned {
-            out[place] = solution[local];
+            out[place] = values[local];
         }
         Ok(())
+    }
+
+    /// The package that factorises, or the method that chooses it on each rank.
+    pub(super) fn factor_solver(&self) -> petsc::Result<Option<String>> {
+        match &self.rest {
+            Rest::Alone(solver) => Ok(solver.factor_solver()?.or(solver.preconditioner()?)),
+            Rest::Together(_) => Ok(Some("mumps, substructures".to_owned())),
+        }
     }
 }
 
@@ -181,7 +164,7 @@ fn shared_unknowns(system: &System) -> (Vec<Shared>, usize) {
     let mine = (0..2 * local.nodes.len()).filter_map(|unknown| {
         let place = places[local.nodes[unknown / 2]]?;
         Some(Shared {
-            local: unknown,
+            unknown,
             place: 2 * place + unknown % 2,
             owned: local.owned[unknown / 2],
         })
