@@ -13,7 +13,7 @@
 
 use super::numbering::Numbering;
 use super::subdomain::Subdomain;
-use super::tangent::{CONTACT_LAYOUT as AT, JacobianEntries};
+use super::tangent::{CONTACT_LAYOUT as AT, ELEMENT_ENTRIES, JacobianEntries};
 
 /// Entries of one contact point in the condensed matrix.
 const CONDENSED_ENTRIES: usize = 36;
@@ -23,9 +23,26 @@ pub(super) struct Condensation {
     points: Vec<EliminatedPoint>,
     /// First global row of this rank.
     first_row: i32,
-    /// Entries of the condensed matrix.
-    values: Vec<f64>,
+    /// Entries of contact points and supports.
+    others: Vec<f64>,
     known: Vec<KnownColumn>,
+}
+
+/// The entries of a condensed matrix, in the order of its pattern: first those of the elements, which condensation leaves
+/// as they are, then those of contact points and supports.
+#[derive(Clone, Copy)]
+pub(super) struct CondensedEntries<'a> {
+    pub elements: &'a [f64],
+    pub others: &'a [f64],
+}
+
+impl CondensedEntries<'_> {
+    /// All of them side by side.
+    pub(super) fn copy_to(&self, all: &mut Vec<f64>) {
+        all.clear();
+        all.extend_from_slice(self.elements);
+        all.extend_from_slice(self.others);
+    }
 }
 
 /// Rows and columns of the condensed matrix's entries as local displacements; a negative row or column
@@ -34,6 +51,8 @@ pub(super) struct Condensation {
 pub(super) struct CondensedPattern {
     pub rows: Vec<i32>,
     pub columns: Vec<i32>,
+    /// How many entries are of elements; they come first.
+    pub elements: usize,
     /// Which of the mesh's columns of elements, from one end of the sheet to the other, each entry belongs to.
     pub slices: Vec<usize>,
 }
@@ -41,6 +60,7 @@ pub(super) struct CondensedPattern {
 /// An entry whose column is a prescribed displacement: it goes to the right-hand side.
 struct KnownColumn {
     entry: usize,
+    value: f64,
     row: usize,
     column: usize,
 }
@@ -86,7 +106,12 @@ impl Condensation {
                     let free = !prescribed[row] && !prescribed[column];
                     if prescribed[column] && !prescribed[row] {
                         let entry = rows.len();
-                        known.push(KnownColumn { entry, row, column });
+                        known.push(KnownColumn {
+                            entry,
+                            value: 0.0,
+                            row,
+                            column,
+                        });
                     }
                     rows.push(if free { row as i32 } else { -1 });
                     columns.push(if free { column as i32 } else { -1 });
@@ -115,30 +140,34 @@ impl Condensation {
             columns.push(support.unknown as i32);
             slices.push(slice_of_node[support.unknown / 2]);
         }
+        let elements = ELEMENT_ENTRIES * local.connectivity.len();
         let this = Self {
             points,
             first_row: numbering.rank_rows[rank] as i32,
-            values: vec![1.0; rows.len()],
+            others: vec![1.0; rows.len() - elements],
             known,
         };
         let pattern = CondensedPattern {
             rows,
             columns,
+            elements,
             slices,
         };
         (this, pattern)
     }
 
     /// Takes over a Jacobian and this rank's active set (ascending global rows). Returns the condensed entries.
-    pub fn condense(&mut self, jacobian: &JacobianEntries, active: &[i32]) -> &[f64] {
+    pub fn condense<'a>(
+        &'a mut self,
+        jacobian: &'a JacobianEntries,
+        active: &[i32],
+    ) -> CondensedEntries<'a> {
         let elements = jacobian.of_elements();
-        let (condensed_elements, condensed) = self.values.split_at_mut(elements.len());
-        condensed_elements.copy_from_slice(elements);
         let mut active = active.iter().peekable();
         let mut active_before = 0;
         let blocks = jacobian
             .of_contacts()
-            .zip(condensed.chunks_exact_mut(CONDENSED_ENTRIES));
+            .zip(self.others.chunks_exact_mut(CONDENSED_ENTRIES));
         for (point, (entries, out)) in self.points.iter_mut().zip(blocks) {
             let gap = point.row + 1;
             while active.next_if(|&&row| row < gap).is_some() {
@@ -154,7 +183,16 @@ impl Condensation {
                 }
             }
         }
-        &self.values
+        for known in &mut self.known {
+            known.value = match known.entry.checked_sub(elements.len()) {
+                None => elements[known.entry],
+                Some(entry) => self.others[entry],
+            };
+        }
+        CondensedEntries {
+            elements,
+            others: &self.others,
+        }
     }
 
     /// What elimination adds to the right-hand side of the local displacements' rows, from this rank's
@@ -162,7 +200,7 @@ impl Condensation {
     pub fn forward(&self, r: &[f64], known: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         for column in &self.known {
-            out[column.row] -= self.values[column.entry] * known[column.column];
+            out[column.row] -= column.value * known[column.column];
         }
         for point in &self.points {
             let start = point.start(r);

@@ -57,8 +57,8 @@ struct Parts {
 
 /// Who solves the condensed system.
 enum Solver {
-    /// A linear solver of PETSc.
-    Whole(Matrix, Ksp),
+    /// A linear solver of PETSc, with its matrix and room for its entries.
+    Whole(Matrix, Ksp, Vec<f64>),
     /// Each rank its own elements slice by slice, and all together what is between them.
     Substructures(Box<Substructures>),
 }
@@ -110,13 +110,14 @@ impl CondensedSolve {
             solver,
             ..
         } = &mut *self.parts.borrow_mut();
-        let values = condensation.condense(jacobian, active);
+        let entries = condensation.condense(jacobian, active);
         match solver {
-            Solver::Whole(matrix, solver) => {
-                matrix.set_values_coo(values)?;
+            Solver::Whole(matrix, solver, all) => {
+                entries.copy_to(all);
+                matrix.set_values_coo(all)?;
                 factorise(solver, matrix)
             }
-            Solver::Substructures(solver) => solver.factor(values),
+            Solver::Substructures(solver) => solver.factor(entries),
         }
     }
 
@@ -130,7 +131,7 @@ impl CondensedSolve {
         let parts = &mut *self.parts.borrow_mut();
         self.condense(parts, r)?;
         match &mut parts.solver {
-            Solver::Whole(_, solver) => {
+            Solver::Whole(_, solver, _) => {
                 solver.solve(&parts.right_side, &mut parts.step)?;
             }
             Solver::Substructures(solver) => {
@@ -164,7 +165,7 @@ impl CondensedSolve {
             self.condense(parts, r)?;
             right_sides.set_column(column, &parts.right_side)?;
         }
-        if let Solver::Whole(_, solver) = &mut parts.solver {
+        if let Solver::Whole(_, solver, _) = &mut parts.solver {
             solver.solve_block(&right_sides, &mut condensed_steps)?;
         }
         for (column, (r, step)) in r.iter().zip(steps).enumerate() {
@@ -209,7 +210,7 @@ impl CondensedSolve {
     /// If PETSc fails.
     pub fn factor_solver(&self) -> petsc::Result<Option<String>> {
         match &self.parts.borrow().solver {
-            Solver::Whole(_, solver) => Ok(solver.factor_solver()?.or(solver.preconditioner()?)),
+            Solver::Whole(_, solver, _) => Ok(solver.factor_solver()?.or(solver.preconditioner()?)),
             Solver::Substructures(solver) => solver.factor_solver(),
         }
     }
@@ -244,7 +245,7 @@ impl Solver {
             &pattern.columns,
         )?;
         let solver = direct_solver(system.comm(), &matrix, kind, prefix)?;
-        Ok(Self::Whole(matrix, solver))
+        Ok(Self::Whole(matrix, solver, vec![0.0; pattern.rows.len()]))
     }
 }
 

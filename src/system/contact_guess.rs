@@ -3,7 +3,7 @@
 use petsc::VectorRef;
 
 use super::System;
-use super::contact_profile::{ContactProfile, Foot, NEAR};
+use super::contact_profile::{ContactProfile, NEAR, NearPoint};
 use super::subdomain::LocalContact;
 use crate::contact::{ContactRule, FrictionState};
 use crate::mesh::SurfaceSide;
@@ -58,7 +58,7 @@ impl System {
                 .flat_map(|distance| [distance.arc_length, distance.value])
                 .collect();
             let all = ranks::gather_lists(&self.comm, &near);
-            let foot = |pair: &[f64]| Foot {
+            let foot = |pair: &[f64]| NearPoint {
                 along: pair[0],
                 distance: pair[1],
             };

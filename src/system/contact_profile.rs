@@ -15,7 +15,7 @@ const LEAST_POINTS: usize = 3;
 
 /// A contact point near a tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Foot {
+pub(super) struct NearPoint {
     /// Arc length of its foot along the tool, mm.
     pub along: f64,
     /// Signed distance, mm.
@@ -34,7 +34,7 @@ struct Zone {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct ContactProfile {
     /// Ascending along the tool.
-    feet: Vec<Foot>,
+    feet: Vec<NearPoint>,
     zones: Vec<Zone>,
     /// Whether every zone has enough points.
     resolved: bool,
@@ -42,9 +42,9 @@ pub(super) struct ContactProfile {
 
 impl ContactProfile {
     /// Of points in any order.
-    pub fn new(mut feet: Vec<Foot>) -> Self {
+    pub fn new(mut feet: Vec<NearPoint>) -> Self {
         feet.sort_by(|a, b| a.along.total_cmp(&b.along));
-        let pressed: Vec<&[Foot]> = feet
+        let pressed: Vec<&[NearPoint]> = feet
             .chunk_by(|a, b| (a.distance < 0.0) == (b.distance < 0.0))
             .filter(|run| run[0].distance < 0.0)
             .collect();
@@ -88,7 +88,7 @@ impl ContactProfile {
 
 impl Zone {
     /// Of its pressed points, at least one.
-    fn of(pressed: &[Foot]) -> Self {
+    fn of(pressed: &[NearPoint]) -> Self {
         let depth: f64 = pressed.iter().map(|foot| foot.distance).sum();
         let moment: f64 = pressed.iter().map(|foot| foot.distance * foot.along).sum();
         Self {
@@ -121,7 +121,7 @@ mod tests {
         let feet = (-20..20).rev().map(|k| {
             let along = centre + 0.07 * (f64::from(k) + phase);
             let distance = (along - centre).powi(2) - 0.01;
-            Foot { along, distance }
+            NearPoint { along, distance }
         });
         ContactProfile::new(feet.filter(|foot| foot.distance < NEAR).collect())
     }
@@ -147,7 +147,7 @@ mod tests {
         assert_eq!(now.expected(12.0, &now, 1.0), None);
         assert!(now.reaches(10.5) && !now.reaches(10.7) && !none.reaches(10.0));
         assert!(now.is_resolved());
-        let point = Foot {
+        let point = NearPoint {
             along: 1.0,
             distance: -1e-3,
         };

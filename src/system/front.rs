@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use petsc::FactorKind;
 
-use super::condensation::CondensedPattern;
+use super::condensation::{CondensedEntries, CondensedPattern};
 use super::dense::PartialFactors;
-use super::fronts::Order;
+use super::elimination_order::EliminationOrder;
 
 /// A slice: the unknowns inside it, then those on its ends.
 pub(super) struct Front {
@@ -14,12 +14,22 @@ pub(super) struct Front {
     unknowns: Vec<usize>,
     inside: usize,
     factors: PartialFactors,
-    /// In the first layer: number of an entry of the pattern, and where in the matrix it is added.
-    entries: Vec<[u32; 2]>,
+    /// In the first layer: number of an entry of an element or of another one, and where in the matrix it is added.
+    elements: Vec<[u32; 2]>,
+    others: Vec<[u32; 2]>,
     /// In the others: what slices of the layer below left.
     parts: Vec<Part>,
     /// Where what it leaves itself lies among the values of its layer.
     left: Range<usize>,
+}
+
+/// Where a front finds its entries.
+#[derive(Clone, Copy)]
+pub(super) enum Below<'a> {
+    /// Those of the pattern, for the first layer.
+    Entries(CondensedEntries<'a>),
+    /// The values of the layer below.
+    Layer(&'a [f64]),
 }
 
 /// What a slice of the layer below left.
@@ -39,7 +49,7 @@ impl Front {
     /// The slices of the first layer.
     pub(super) fn of_entries(
         pattern: &CondensedPattern,
-        order: &Order,
+        order: &EliminationOrder,
         kind: FactorKind,
     ) -> Vec<Self> {
         let count = pattern.slices.iter().max().map_or(0, |last| last + 1);
@@ -49,7 +59,7 @@ impl Front {
             if let (Ok(row), Ok(column)) = (usize::try_from(row), usize::try_from(column)) {
                 let upper = order.place[row] <= order.place[column];
                 if upper || kind == FactorKind::General {
-                    slices[slice].push((number as u32, row, column));
+                    slices[slice].push((number, row, column));
                 }
             }
         }
@@ -62,17 +72,25 @@ impl Front {
                 place[old] = new;
             }
             let size = front.unknowns.len();
-            let entries = entries
-                .into_iter()
-                .map(|(number, row, column)| [number, (place[row] * size + place[column]) as u32]);
-            front.entries = entries.collect();
+            for (number, row, column) in entries {
+                let place = (place[row] * size + place[column]) as u32;
+                match number.checked_sub(pattern.elements) {
+                    None => front.elements.push([number as u32, place]),
+                    Some(number) => front.others.push([number as u32, place]),
+                }
+            }
             front
         });
         fronts.collect()
     }
 
     /// A slice of a layer, made of these neighbours in the layer below.
-    pub(super) fn of_parts(parts: &[Self], order: &Order, layer: usize, kind: FactorKind) -> Self {
+    pub(super) fn of_parts(
+        parts: &[Self],
+        order: &EliminationOrder,
+        layer: usize,
+        kind: FactorKind,
+    ) -> Self {
         let unknowns = parts.iter().flat_map(Self::outer).copied().collect();
         let mut front = Self::of(unknowns, order, layer, kind);
         let parts = parts.iter().map(|part| Part {
@@ -83,7 +101,12 @@ impl Front {
         front
     }
 
-    fn of(mut unknowns: Vec<usize>, order: &Order, layer: usize, kind: FactorKind) -> Self {
+    fn of(
+        mut unknowns: Vec<usize>,
+        order: &EliminationOrder,
+        layer: usize,
+        kind: FactorKind,
+    ) -> Self {
         unknowns.sort_unstable_by_key(|&unknown| order.place[unknown]);
         unknowns.dedup();
         let inside = unknowns.partition_point(|&unknown| order.layer[unknown] <= layer);
@@ -92,7 +115,8 @@ impl Front {
             factors: PartialFactors::new(kind, inside, unknowns.len()),
             unknowns,
             inside,
-            entries: Vec::new(),
+            elements: Vec::new(),
+            others: Vec::new(),
             parts: Vec::new(),
             left: 0..0,
         }
@@ -117,7 +141,7 @@ impl Front {
     /// the upper triangle only. `rows` is room for the rows of the unknowns on the ends. Says whether that could be done.
     pub(super) fn eliminate(
         &mut self,
-        below: &[f64],
+        below: Below<'_>,
         rows: &mut [f64],
         values: &mut [f64],
     ) -> bool {
@@ -126,16 +150,16 @@ impl Front {
         let inside = self.factors.rows();
         inside.fill(0.0);
         rows.fill(0.0);
-        let boundary = inside.len();
-        for &[number, place] in &self.entries {
-            let (value, place) = (below[number as usize], place as usize);
-            match place.checked_sub(boundary) {
-                None => inside[place] += value,
-                Some(place) => rows[place] += value,
+        match below {
+            Below::Entries(entries) => {
+                add(&self.elements, entries.elements, inside, rows);
+                add(&self.others, entries.others, inside, rows);
             }
-        }
-        for part in &self.parts {
-            part.add(&below[part.values.clone()], [inside, rows], size, self.kind);
+            Below::Layer(below) => {
+                for part in &self.parts {
+                    part.add(&below[part.values.clone()], [inside, rows], size, self.kind);
+                }
+            }
         }
         let usable = self.factors.factor(rows);
         let left = values[self.left.clone()].chunks_exact_mut(outer.max(1));
@@ -175,6 +199,17 @@ impl Front {
     }
 }
 
+/// Adds entries to a front: to rows inside it or on its ends.
+fn add(places: &[[u32; 2]], entries: &[f64], inside: &mut [f64], ends: &mut [f64]) {
+    for &[number, place] in places {
+        let (value, place) = (entries[number as usize], place as usize);
+        match place.checked_sub(inside.len()) {
+            None => inside[place] += value,
+            Some(place) => ends[place] += value,
+        }
+    }
+}
+
 impl Part {
     /// Adds it to a front: rows inside it and on its ends.
     fn add(&self, values: &[f64], [inside, ends]: [&mut [f64]; 2], size: usize, kind: FactorKind) {
@@ -204,7 +239,7 @@ impl Part {
 
 impl Run {
     /// How the unknowns of a part lie among those of a front, both in their order.
-    fn all(part: &[usize], front: &[usize], order: &Order) -> Vec<Self> {
+    fn all(part: &[usize], front: &[usize], order: &EliminationOrder) -> Vec<Self> {
         let mut runs: Vec<Self> = Vec::new();
         for (from, unknown) in part.iter().enumerate() {
             let place = order.place[*unknown];

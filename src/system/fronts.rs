@@ -14,20 +14,17 @@
 
 use petsc::FactorKind;
 
-use super::condensation::CondensedPattern;
+use super::condensation::{CondensedEntries, CondensedPattern};
 use super::dense::PartialFactors;
-use super::front::Front;
-
-/// Slices that are few enough for the sparse solver.
-const ENOUGH: usize = 10;
-/// Unknowns of a slice of one column of elements, beyond which a sparse solver, which knows an order through the thickness,
-/// too, is faster: more than ten elements there.
-const MOST_IN_A_SLICE: usize = 110;
+use super::elimination_order::EliminationOrder;
+use super::front::{Below, Front};
 
 /// The elimination on one rank, layer by layer.
 pub(super) struct Fronts {
     kind: FactorKind,
     layers: Vec<Layer>,
+    /// The entries themselves, where there is no layer.
+    untouched: Vec<f64>,
     /// Unknowns that no layer eliminates.
     left: Vec<usize>,
     /// Rows of one front, and its part of a right-hand side.
@@ -49,7 +46,7 @@ impl Fronts {
         kept: &[bool],
         kind: FactorKind,
     ) -> (Self, CondensedPattern) {
-        let order = Order::of(&pattern, kept);
+        let order = EliminationOrder::new(&pattern, kept);
         let mut layers = Vec::with_capacity(order.layers);
         if order.layers > 0 {
             layers.push(Layer::new(Front::of_entries(&pattern, &order, kind)));
@@ -84,10 +81,16 @@ impl Fronts {
         for index in rest.rows.iter_mut().chain(&mut rest.columns) {
             *index = usize::try_from(*index).map_or(-1, |old| place[old]);
         }
+        let untouched = if layers.is_empty() {
+            rest.rows.len()
+        } else {
+            0
+        };
         let this = Self {
             kind,
             rows: vec![0.0; largest * largest],
             vector: vec![0.0; largest],
+            untouched: vec![0.0; untouched],
             layers,
             left,
         };
@@ -100,9 +103,13 @@ impl Fronts {
     }
 
     /// Eliminates for entries in the order of the pattern. Returns those that are left, none if a front is singular.
-    pub(super) fn eliminate<'a>(&'a mut self, values: &'a [f64]) -> Option<&'a [f64]> {
-        let mut below = values;
+    pub(super) fn eliminate(&mut self, entries: CondensedEntries<'_>) -> Option<&[f64]> {
         let last = self.layers.len();
+        if last == 0 {
+            entries.copy_to(&mut self.untouched);
+            return Some(&self.untouched);
+        }
+        let mut below = Below::Entries(entries);
         for (number, Layer { fronts, values }) in self.layers.iter_mut().enumerate() {
             let mirrored = self.kind == FactorKind::Symmetric && number + 1 == last;
             for front in fronts {
@@ -113,9 +120,9 @@ impl Fronts {
                     front.mirror(values);
                 }
             }
-            below = values;
+            below = Below::Layer(values);
         }
-        Some(below)
+        self.layers.last().map(|layer| &layer.values[..])
     }
 
     /// Takes the right-hand side `b` to that of the unknowns left; in the others' places it keeps what
@@ -142,74 +149,5 @@ impl Layer {
         }
         let values = vec![0.0; size];
         Self { fronts, values }
-    }
-}
-
-/// In which layer each unknown is eliminated, and in which order.
-pub(super) struct Order {
-    /// Layers, none where there are few slices.
-    pub layers: usize,
-    /// The layer of each unknown; the number of layers for one that is left.
-    pub layer: Vec<usize>,
-    /// Its place in the order: by layers, and along the sheet within each, the same in every front, so that what is above
-    /// the diagonal stays there.
-    pub place: Vec<usize>,
-}
-
-impl Order {
-    fn of(pattern: &CondensedPattern, kept: &[bool]) -> Self {
-        let mut first = vec![usize::MAX; kept.len()];
-        let mut last = vec![0; kept.len()];
-        for (&row, &slice) in pattern.rows.iter().zip(&pattern.slices) {
-            if let Ok(row) = usize::try_from(row) {
-                first[row] = slice.min(first[row]);
-                last[row] = slice.max(last[row]);
-            }
-        }
-        let mut slices = pattern.slices.iter().max().map_or(0, |last| last + 1);
-        let mut unknowns = vec![0; slices];
-        for (&first, &last) in first.iter().zip(&last) {
-            let touched = unknowns
-                .iter_mut()
-                .skip(first)
-                .take((last + 1).saturating_sub(first));
-            touched.for_each(|unknowns| *unknowns += 1);
-        }
-        if unknowns.iter().any(|&unknowns| unknowns > MOST_IN_A_SLICE) {
-            slices = 0;
-        }
-        let mut layers = usize::from(slices > ENOUGH);
-        while slices > ENOUGH {
-            slices = slices.div_ceil(2);
-            layers += 1;
-        }
-        let layer_of = |unknown: usize| {
-            let together = |layer: &usize| first[unknown] >> layer == last[unknown] >> layer;
-            match kept[unknown] {
-                false => (0..layers).find(together).unwrap_or(layers),
-                true => layers,
-            }
-        };
-        let layer: Vec<usize> = (0..kept.len()).map(layer_of).collect();
-        let mut order: Vec<usize> = (0..kept.len()).collect();
-        order.sort_by_key(|&unknown| (layer[unknown], first[unknown]));
-        let mut place = vec![0; kept.len()];
-        for (new, &old) in order.iter().enumerate() {
-            place[old] = new;
-        }
-        Self {
-            layers,
-            layer,
-            place,
-        }
-    }
-
-    /// The unknowns that are left, in their order.
-    fn left(&self) -> Vec<usize> {
-        let mut left: Vec<usize> = (0..self.layer.len())
-            .filter(|&unknown| self.layer[unknown] == self.layers)
-            .collect();
-        left.sort_by_key(|&unknown| self.place[unknown]);
-        left
     }
 }

@@ -13,6 +13,7 @@ mod contact_profile;
 mod contact_samples;
 mod convergence;
 mod dense;
+mod elimination_order;
 mod error;
 mod evaluated;
 mod front;

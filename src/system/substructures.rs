@@ -11,7 +11,7 @@ use mpi::traits::{Communicator, CommunicatorCollectives};
 use petsc::{FactorKind, Ksp, Matrix, Vector};
 
 use super::System;
-use super::condensation::CondensedPattern;
+use super::condensation::{CondensedEntries, CondensedPattern};
 use super::condensed_solve::{direct_solver, factorise};
 use super::fronts::Fronts;
 use super::interface::{Interface, Shared};
@@ -40,7 +40,7 @@ enum Rest {
     /// A solver of PETSc, where there is one rank.
     Alone(Ksp),
     /// All ranks.
-    Together(Interface),
+    Together(Box<Interface>),
 }
 
 impl Substructures {
@@ -83,14 +83,14 @@ impl Substructures {
             for shared in &mut shared {
                 shared.unknown = place[shared.unknown];
             }
-            Rest::Together(Interface::new(
+            Rest::Together(Box::new(Interface::new(
                 comm,
                 &matrix,
                 kind,
                 shared,
                 count,
                 options_prefix,
-            )?)
+            )?))
         };
         Ok(Ok(Self {
             right_side: Vector::new(&alone, size)?,
@@ -105,8 +105,8 @@ impl Substructures {
     }
 
     /// Factorises for the entries of this rank. Says whether the matrix can be used. Collective.
-    pub(super) fn factor(&mut self, values: &[f64]) -> petsc::Result<bool> {
-        let left = self.fronts.eliminate(values);
+    pub(super) fn factor(&mut self, entries: CondensedEntries<'_>) -> petsc::Result<bool> {
+        let left = self.fronts.eliminate(entries);
         if let Some(left) = left {
             self.matrix.set_values_coo(left)?;
         }

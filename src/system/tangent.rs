@@ -8,7 +8,7 @@ use super::subdomain::{LocalValue, Subdomain};
 use crate::element::ElementForce;
 
 /// Entries of one element.
-const ELEMENT_ENTRIES: usize = 256;
+pub(super) const ELEMENT_ENTRIES: usize = 256;
 /// Entries of one contact point: 6 x 6 and 6 in the equilibrium rows, 8 in each of its own.
 const CONTACT_ENTRIES: usize = 58;
 

@@ -81,7 +81,12 @@ pub(in crate::run) fn report(comm: &SimpleCommunicator) -> petsc::Result<String>
 }
 
 /// Options that choose a solver of the whole condensed system.
-const CHOOSE_WHOLE: &[&str] = &[condensed!("ksp_type"), condensed!("pc_type")];
+const CHOOSE_WHOLE: &[&str] = &[
+    condensed!("ksp_type"),
+    condensed!("pc_type"),
+    // Old factors of one part and new ones of the others would fit nothing.
+    condensed!("ksp_reuse_preconditioner"),
+];
 
 /// Whether the option has the value that this program gave it for the linear solves.
 pub(super) fn is_default(name: &str, value: Option<&str>) -> bool {
