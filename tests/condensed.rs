@@ -33,7 +33,8 @@ fn compare(world: &SimpleCommunicator) {
 
 /// One Jacobian with points of every kind, two active sets with one analysis.
 fn agrees(world: &SimpleCommunicator, friction: f64, method: CondensedMethod) {
-    let mut problem = small_problem(12, 2);
+    // Enough columns of elements for several layers of slices.
+    let mut problem = small_problem(24, 2);
     problem.friction_coefficient = friction;
     let system = System::new(problem, world.duplicate()).unwrap();
     let history = History::virgin(system.local());

@@ -58,11 +58,11 @@ impl System {
                 .flat_map(|distance| [distance.arc_length, distance.value])
                 .collect();
             let all = ranks::gather_lists(&self.comm, &near);
-            let foot = |pair: &[f64]| NearPoint {
+            let point = |pair: &[f64]| NearPoint {
                 along: pair[0],
                 distance: pair[1],
             };
-            ContactProfile::new(all.chunks_exact(2).map(foot).collect())
+            ContactProfile::new(all.chunks_exact(2).map(point).collect())
         };
         Ok(Some(ContactProfiles {
             bottom: profile(SurfaceSide::Bottom),

@@ -306,6 +306,7 @@ mod tests {
             (22, 66),
             (0, 6),
             (31, 32),
+            (0, 0),
         ] {
             solves(FactorKind::Symmetric, eliminated, size);
             solves(FactorKind::General, eliminated, size);

@@ -18,6 +18,8 @@ pub(super) struct EliminationOrder {
     /// Its place in the order: by layers, and along the sheet within each, the same in every front, so that what is above
     /// the diagonal stays there.
     pub place: Vec<usize>,
+    /// The unknowns that are left, in this order.
+    pub left: Vec<usize>,
 }
 
 impl EliminationOrder {
@@ -62,19 +64,12 @@ impl EliminationOrder {
         for (new, &old) in order.iter().enumerate() {
             place[old] = new;
         }
+        let eliminated = order.partition_point(|&unknown| layer[unknown] < layers);
         Self {
             layers,
             layer,
             place,
+            left: order.split_off(eliminated),
         }
-    }
-
-    /// The unknowns that are left, in their order.
-    pub(super) fn left(&self) -> Vec<usize> {
-        let mut left: Vec<usize> = (0..self.layer.len())
-            .filter(|&unknown| self.layer[unknown] == self.layers)
-            .collect();
-        left.sort_by_key(|&unknown| self.place[unknown]);
-        left
     }
 }

@@ -62,7 +62,7 @@ impl Fronts {
             .map(|front| front.unknowns().len())
             .max()
             .unwrap_or(0);
-        let left = order.left();
+        let left = order.left;
         let mut place = vec![-1; kept.len()];
         for (new, &old) in left.iter().enumerate() {
             place[old] = new as i32;
