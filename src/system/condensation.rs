@@ -37,6 +37,14 @@ pub(super) struct CondensedEntries<'a> {
 }
 
 impl CondensedEntries<'_> {
+    /// The one with this number in the pattern.
+    pub(super) fn get(&self, number: usize) -> f64 {
+        match number.checked_sub(self.elements.len()) {
+            None => self.elements[number],
+            Some(number) => self.others[number],
+        }
+    }
+
     /// All of them side by side.
     pub(super) fn copy_to(&self, all: &mut Vec<f64>) {
         all.clear();

@@ -1,15 +1,23 @@
 //! Some unknowns of a small dense system eliminated: factors for them, and what they leave for the others.
 //!
-//! The matrix is n x n, row by row, and its first p unknowns are eliminated, four at a time so that what is loaded is used
-//! more than once (right-looking; Golub and Van Loan 2013, Matrix Computations, sections 3.2 and 4.1). These loops stand here
-//! because safe Rust does not reach PETSc's BLAS, and for some fifty unknowns they are as fast.
+//! The matrix is n x n, row by row, and its first p unknowns are eliminated, four at a time (right-looking; Golub and Van Loan
+//! 2013, Matrix Computations, sections 3.2 and 4.1). These loops stand here because safe Rust does not reach PETSc's BLAS, which
+//! for some fifty unknowns is no faster. A row is followed by zeros up to a multiple of four, so that whole vectors fit.
+
+mod elimination;
+mod rows;
 
 use std::array;
+use std::mem::take;
 use std::ops::Range;
 
 use petsc::FactorKind;
+use pulp::{Arch, Simd, WithSimd};
 
-/// Pivots that are eliminated together.
+use self::elimination::Elimination;
+use self::rows::{add_multiples, products};
+
+/// Pivots that are eliminated together; vectors divide it.
 const PANEL: usize = 4;
 
 /// The factors of the unknowns eliminated.
@@ -18,9 +26,10 @@ pub(super) struct PartialFactors {
     /// p and n.
     eliminated: usize,
     size: usize,
-    /// Their rows of D Lᵀ or U, p x n.
+    /// Panel by panel and row by row: D Lᵀ or U, from the first column of the panel on, where L of a general matrix stands left
+    /// of the diagonal.
     upper: Vec<f64>,
-    /// L in the rows of the others, (n - p) x p; empty for a symmetric matrix, whose upper rows hold it.
+    /// L of a general matrix before that column, then that in the rows of the others. Of a symmetric one `upper` holds it.
     lower: Vec<f64>,
     /// The row that changed places with each; itself for a symmetric matrix.
     swapped: Vec<usize>,
@@ -30,215 +39,198 @@ impl PartialFactors {
     /// For matrices of `size` rows, of whose unknowns the first ones are to be eliminated. A symmetric matrix, of which
     /// only the upper triangle is read, is taken for one that needs no pivoting.
     pub(super) fn new(kind: FactorKind, eliminated: usize, size: usize) -> Self {
-        let below = match kind {
+        let stride = stride(size);
+        let upper = panels(&(0..eliminated)).map(|panel| panel.len() * (stride - panel.start));
+        let lower = match kind {
             FactorKind::Symmetric => 0,
-            FactorKind::General => size - eliminated,
+            FactorKind::General => before(eliminated) + (size - eliminated) * eliminated,
         };
         Self {
             kind,
             eliminated,
             size,
-            upper: vec![0.0; eliminated * size],
-            lower: vec![0.0; below * eliminated],
+            upper: vec![0.0; upper.sum()],
+            lower: vec![0.0; lower],
             swapped: (0..eliminated).collect(),
         }
     }
 
-    /// The rows of the unknowns to be eliminated, p x n, to be filled before [`PartialFactors::factor`], which puts the
-    /// factors in their place.
-    pub(super) fn rows(&mut self) -> &mut [f64] {
-        &mut self.upper
+    /// The number of unknowns to be eliminated.
+    pub(super) fn eliminated(&self) -> usize {
+        self.eliminated
     }
 
-    /// Factorises the matrix of these rows and those of the others, (n - p) x n, in whose columns of the others it puts what
-    /// is left for them; of a symmetric matrix in the upper triangle only. Says whether every pivot can be used.
-    pub(super) fn factor(&mut self, others: &mut [f64]) -> bool {
-        let (p, n) = (self.eliminated, self.size);
-        if p == 0 {
-            return true;
-        }
-        let upper = &mut self.upper;
-        for start in (0..p).step_by(PANEL) {
-            let panel = start..p.min(start + PANEL);
-            match self.kind {
-                FactorKind::Symmetric => symmetric_panel(upper, others, n, panel),
-                FactorKind::General => general_panel(upper, others, n, panel, &mut self.swapped),
+    /// How far rows of the matrix are apart, and the length of a vector with the zeros behind it.
+    pub(super) fn stride(&self) -> usize {
+        stride(self.size)
+    }
+
+    /// Factorises a matrix, in whose rows and columns of the others it puts what is left for them; of a symmetric matrix in the
+    /// upper triangle only. Says whether every pivot can be used.
+    pub(super) fn factor(&mut self, matrix: &mut [f64]) -> bool {
+        let (p, stride) = (self.eliminated, self.stride());
+        Arch::new().dispatch(Elimination {
+            kind: self.kind,
+            swapped: &mut self.swapped,
+            matrix,
+            stride,
+        });
+        let (mut upper, mut lower) = (&mut self.upper[..], &mut self.lower[..]);
+        for (k, row) in matrix.chunks_exact(stride.max(1)).enumerate() {
+            let (left, right) = row.split_at(if k < p { k / PANEL * PANEL } else { p });
+            if self.kind == FactorKind::General {
+                copy_to_first(&mut lower, left);
+            }
+            if k < p {
+                copy_to_first(&mut upper, right);
             }
         }
-        let rows = self.lower.chunks_exact_mut(p);
-        for (lower, row) in rows.zip(others.chunks_exact(n)) {
-            lower.copy_from_slice(&row[..p]);
-        }
-        let mut pivots = (0..p).map(|k| self.upper[k * n + k]);
+        let mut pivots = (0..p).map(|k| matrix[k * stride + k]);
         pivots.all(|pivot| pivot != 0.0 && pivot.is_finite())
     }
 
     /// The forward substitution: takes the right-hand side `b` of the others to that of what is left.
     pub(super) fn forward(&self, b: &mut [f64]) {
-        let p = self.eliminated;
-        // An empty matrix has no rows of any length.
-        let rows = self.upper.chunks_exact(self.size.max(1)).enumerate();
-        match self.kind {
-            FactorKind::Symmetric => rows.for_each(|(k, row)| {
-                let multiple = b[k] / row[k];
-                subtract(&mut b[k + 1..], &row[k + 1..], multiple);
-            }),
-            FactorKind::General => {
-                for (k, &other) in self.swapped.iter().enumerate() {
-                    b.swap(k, other);
-                }
-                rows.for_each(|(k, row)| b[k] -= dot(&row[..k], &b[..k]));
-                let (inner, others) = b.split_at_mut(p);
-                for (value, row) in others.iter_mut().zip(self.lower.chunks_exact(p.max(1))) {
-                    *value -= dot(row, inner);
-                }
-            }
-        }
+        let factors = self;
+        Arch::new().dispatch(Forward { factors, b });
     }
 
     /// The backward substitution: completes the others' solution in `x`.
     pub(super) fn backward(&self, x: &mut [f64]) {
-        let rows = self.upper.chunks_exact(self.size.max(1));
-        for (k, row) in rows.enumerate().rev() {
-            x[k] = (x[k] - dot(&row[k + 1..], &x[k + 1..])) / row[k];
+        let factors = self;
+        Arch::new().dispatch(Backward { factors, x });
+    }
+
+    /// What `upper` holds of a panel.
+    #[inline(always)]
+    fn upper_rows(&self, panel: &Range<usize>) -> [&[f64]; PANEL] {
+        let start = panel.start * self.stride() - before(panel.start);
+        let width = self.stride() - panel.start;
+        rows_of(&self.upper[start..], width, 0..panel.len())
+    }
+
+    /// What `lower` holds of a panel.
+    #[inline(always)]
+    fn lower_rows(&self, panel: &Range<usize>) -> [&[f64]; PANEL] {
+        let rows = &self.lower[before(panel.start)..];
+        rows_of(rows, panel.start, 0..panel.len())
+    }
+}
+
+/// How far rows of a matrix are apart.
+fn stride(size: usize) -> usize {
+    size.next_multiple_of(PANEL)
+}
+
+/// Pivots, panel by panel.
+fn panels(pivots: &Range<usize>) -> impl DoubleEndedIterator<Item = Range<usize>> + use<> {
+    let Range { start, end } = *pivots;
+    let first = move |n| start + PANEL * n;
+    (0..pivots.len().div_ceil(PANEL)).map(move |n| first(n)..end.min(first(n + 1)))
+}
+
+/// How many entries stand before the first columns of their panels, in this number of rows.
+fn before(rows: usize) -> usize {
+    let whole = rows / PANEL * PANEL;
+    whole * whole.saturating_sub(PANEL) / 2 + (rows - whole) * whole
+}
+
+/// Copies values to the first places, and takes these away from the others.
+fn copy_to_first(places: &mut &mut [f64], values: &[f64]) {
+    let (first, others) = take(places).split_at_mut(values.len());
+    first.copy_from_slice(values);
+    *places = others;
+}
+
+struct Forward<'a> {
+    factors: &'a PartialFactors,
+    b: &'a mut [f64],
+}
+
+struct Backward<'a> {
+    factors: &'a PartialFactors,
+    x: &'a mut [f64],
+}
+
+impl WithSimd for Forward<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { factors, b } = self;
+        match factors.kind {
+            FactorKind::Symmetric => symmetric_forward(simd, factors, b),
+            FactorKind::General => general_forward(simd, factors, b),
         }
     }
 }
 
-/// Eliminates the pivots of a panel from all rows below, upper triangle only.
-fn symmetric_panel(upper: &mut [f64], others: &mut [f64], n: usize, panel: Range<usize>) {
-    let eliminated = upper.len() / n;
-    for i in panel.clone() {
-        let (above, below) = upper.split_at_mut((i + 1) * n);
-        let pivot = &above[i * n..];
-        for (j, row) in (i + 1..panel.end).zip(below.chunks_exact_mut(n)) {
-            subtract(&mut row[j..], &pivot[j..], pivot[j] / pivot[i]);
+impl WithSimd for Backward<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { factors, x } = self;
+        for panel in panels(&(0..factors.eliminated)).rev() {
+            let rows = factors.upper_rows(&panel);
+            let (x, known) = x[panel.start..].split_at_mut(panel.len());
+            let sums = products(simd, rows.map(|row| &row[panel.len()..]), known);
+            for k in (0..x.len()).rev() {
+                let near: f64 = (k + 1..x.len()).map(|j| rows[k][j] * x[j]).sum();
+                x[k] = (x[k] - sums[k] - near) / rows[k][k];
+            }
         }
     }
-    let (above, below) = upper.split_at_mut(panel.end * n);
-    let rows = rows_of(above, n, &panel);
-    let inverse: [f64; PANEL] = array::from_fn(|q| match panel.start + q {
-        k if k < panel.end => 1.0 / rows[q][k],
-        _ => 0.0,
-    });
-    let of = |column: usize| {
-        let multiples = array::from_fn(|q| rows[q][column] * inverse[q]);
-        (column, multiples)
-    };
-    subtract_panel(below, n, rows, |row, _| of(panel.end + row));
-    subtract_panel(others, n, rows, |row, _| of(eliminated + row));
 }
 
-/// Eliminates the pivots of a panel from all rows below, each the largest of its column among the unknowns to be eliminated.
-fn general_panel(
-    upper: &mut [f64],
-    others: &mut [f64],
-    n: usize,
-    panel: Range<usize>,
-    swapped: &mut [usize],
-) {
-    let Range { start, end } = panel;
-    for c in start..end {
-        let size = |row: usize| upper[row * n + c].abs();
-        let best = (c..swapped.len()).max_by(|&a, &b| size(a).total_cmp(&size(b)));
-        let best = best.unwrap_or(c);
-        swapped[c] = best;
-        let (above, below) = upper.split_at_mut((c + 1) * n);
-        let pivot = &mut above[c * n..];
-        if best > c {
-            pivot.swap_with_slice(&mut below[(best - c - 1) * n..][..n]);
+#[inline(always)]
+fn symmetric_forward<S: Simd>(simd: S, factors: &PartialFactors, b: &mut [f64]) {
+    for panel in panels(&(0..factors.eliminated)) {
+        let rows = factors.upper_rows(&panel);
+        let (known, others) = b[panel.start..].split_at_mut(panel.len());
+        let mut multiples = [0.0; PANEL];
+        for k in 0..known.len() {
+            multiples[k] = -known[k] / rows[k][k];
+            (k + 1..known.len()).for_each(|j| known[j] += multiples[k] * rows[k][j]);
         }
-        let below = below.chunks_exact_mut(n);
-        for row in below.chain(others.chunks_exact_mut(n)) {
-            row[c] /= pivot[c];
-            let multiple = row[c];
-            subtract(&mut row[c + 1..end], &pivot[c + 1..end], multiple);
+        let rows = rows.map(|row| &row[panel.len()..]);
+        add_multiples(simd, [others], rows, [multiples]);
+    }
+}
+
+#[inline(always)]
+fn general_forward<S: Simd>(simd: S, factors: &PartialFactors, b: &mut [f64]) {
+    for (k, &other) in factors.swapped.iter().enumerate() {
+        b.swap(k, other);
+    }
+    for panel in panels(&(0..factors.eliminated)) {
+        let (known, b) = b.split_at_mut(panel.start);
+        let sums = products(simd, factors.lower_rows(&panel), known);
+        let rows = factors.upper_rows(&panel);
+        for k in 0..panel.len() {
+            let near: f64 = (0..k).map(|j| rows[k][j] * b[j]).sum();
+            b[k] -= sums[k] + near;
         }
     }
-    for c in start + 1..end {
-        let (above, below) = upper.split_at_mut(c * n);
-        let row = &mut below[..n];
-        for e in start..c {
-            let multiple = row[e];
-            subtract(&mut row[end..], &above[e * n..][end..n], multiple);
+    let p = factors.eliminated;
+    let (known, others) = b.split_at_mut(p);
+    let rows = factors.lower[before(p)..].chunks(PANEL * p.max(1));
+    for (values, rows) in others.chunks_mut(PANEL).zip(rows) {
+        let count = rows.len() / p;
+        let sums = products(simd, rows_of(rows, p, 0..count), known);
+        for (value, sum) in values.iter_mut().zip(&sums[..count]) {
+            *value -= sum;
         }
     }
-    let (above, below) = upper.split_at_mut(end * n);
-    let rows = rows_of(above, n, &panel);
-    let of = |_, row: &[f64]| {
-        let multiples = array::from_fn(|q| if start + q < end { row[start + q] } else { 0.0 });
-        (end, multiples)
-    };
-    subtract_panel(below, n, rows, of);
-    subtract_panel(others, n, rows, of);
 }
 
 /// The rows of a panel, the first one again where it has fewer than a full one.
-fn rows_of<'a>(matrix: &'a [f64], n: usize, panel: &Range<usize>) -> [&'a [f64]; PANEL] {
+#[inline(always)]
+fn rows_of(matrix: &[f64], width: usize, panel: Range<usize>) -> [&[f64]; PANEL] {
     array::from_fn(|q| match panel.start + q {
-        row if row < panel.end => &matrix[row * n..][..n],
-        _ => &matrix[panel.start * n..][..n],
+        row if row < panel.end => &matrix[row * width..][..width],
+        _ => &matrix[panel.start * width..][..width],
     })
-}
-
-/// Subtracts multiples of a panel's rows from each row below, from a column on; both are told by `of`, for the number of
-/// the row and its entries.
-fn subtract_panel(
-    below: &mut [f64],
-    n: usize,
-    [a, b, c, d]: [&[f64]; PANEL],
-    of: impl Fn(usize, &[f64]) -> (usize, [f64; PANEL]),
-) {
-    // Two at a time, so that what is loaded of the panel serves twice.
-    let mut pairs = below.chunks_exact_mut(2 * n);
-    let mut row = 0;
-    for pair in &mut pairs {
-        let (x, y) = pair.split_at_mut(n);
-        let ((from, f), (_, g)) = (of(row, x), of(row + 1, y));
-        let panel = a[from..]
-            .iter()
-            .zip(&b[from..])
-            .zip(&c[from..])
-            .zip(&d[from..]);
-        for ((x, y), (((a, b), c), d)) in x[from..].iter_mut().zip(&mut y[from..]).zip(panel) {
-            *x -= f[0] * a + f[1] * b + f[2] * c + f[3] * d;
-            *y -= g[0] * a + g[1] * b + g[2] * c + g[3] * d;
-        }
-        row += 2;
-    }
-    let last = pairs.into_remainder();
-    if !last.is_empty() {
-        let (from, f) = of(row, last);
-        let panel = a[from..]
-            .iter()
-            .zip(&b[from..])
-            .zip(&c[from..])
-            .zip(&d[from..]);
-        for (x, (((a, b), c), d)) in last[from..].iter_mut().zip(panel) {
-            *x -= f[0] * a + f[1] * b + f[2] * c + f[3] * d;
-        }
-    }
-}
-
-/// `x -= multiple * y`
-fn subtract(x: &mut [f64], y: &[f64], multiple: f64) {
-    for (x, y) in x.iter_mut().zip(y) {
-        *x -= multiple * y;
-    }
-}
-
-/// Four sums side by side, as a single one would wait for itself.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (a, b) = (a.chunks_exact(4), b.chunks_exact(4));
-    let rest = a.remainder().iter().zip(b.remainder());
-    let rest: f64 = rest.map(|(a, b)| a * b).sum();
-    for (a, b) in a.zip(b) {
-        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
-            *sum += a * b;
-        }
-    }
-    sums.iter().sum::<f64>() + rest
 }
 
 #[cfg(test)]
@@ -263,29 +255,41 @@ mod tests {
         out
     }
 
+    /// A matrix of this size with zeros behind its rows.
+    fn padded(matrix: &[f64], size: usize) -> Vec<f64> {
+        let zeros = vec![0.0; stride(size) - size];
+        let rows = matrix.chunks_exact(size.max(1));
+        rows.flat_map(|row| [row, &zeros].concat()).collect()
+    }
+
     /// What is left of matrix and right-hand side, solved by the same elimination to its end, completes to the solution.
     fn solves(kind: FactorKind, eliminated: usize, size: usize) {
         let whole = matrix(size, kind);
         let expected: Vec<f64> = (0..size).map(|i| 1.0 + (i % 5) as f64).collect();
         let rows = whole.chunks_exact(size.max(1));
-        let mut x: Vec<f64> = rows.map(|row| dot(row, &expected)).collect();
+        let mut x: Vec<f64> = rows
+            .map(|row| row.iter().zip(&expected).map(|(a, x)| a * x).sum())
+            .collect();
 
         let mut factors = PartialFactors::new(kind, eliminated, size);
-        let (first, rest) = whole.split_at(eliminated * size);
-        factors.rows().copy_from_slice(first);
-        let mut rest = rest.to_vec();
-        assert!(factors.factor(&mut rest));
+        let mut matrix = padded(&whole, size);
+        x.resize(factors.stride(), 0.0);
+        assert!(factors.factor(&mut matrix));
         factors.forward(&mut x);
         let others = size - eliminated;
-        let rows = rest.chunks_exact(size.max(1));
-        let rest: Vec<f64> = rows.flat_map(|row| row[eliminated..].to_vec()).collect();
+        let rows = matrix
+            .chunks_exact(factors.stride().max(1))
+            .skip(eliminated);
+        let rest: Vec<f64> = rows
+            .flat_map(|row| row[eliminated..size].to_vec())
+            .collect();
         let mut last = PartialFactors::new(kind, others, others);
-        last.rows().copy_from_slice(&rest);
-        if others > 0 {
-            assert!(last.factor(&mut []));
-            last.forward(&mut x[eliminated..]);
-            last.backward(&mut x[eliminated..]);
-        }
+        let mut end = x[eliminated..size].to_vec();
+        end.resize(last.stride(), 0.0);
+        assert!(last.factor(&mut padded(&rest, others)));
+        last.forward(&mut end);
+        last.backward(&mut end);
+        x[eliminated..size].copy_from_slice(&end[..others]);
         factors.backward(&mut x);
         for (found, expected) in x.iter().zip(&expected) {
             assert!(
@@ -303,7 +307,10 @@ mod tests {
             (4, 9),
             (5, 12),
             (12, 56),
-            (22, 66),
+            (34, 56),
+            (64, 98),
+            (70, 101),
+            (22, 22),
             (0, 6),
             (31, 32),
             (0, 0),
@@ -316,12 +323,11 @@ mod tests {
     #[test]
     fn a_general_matrix_is_pivoted() {
         let mut factors = PartialFactors::new(FactorKind::General, 2, 2);
-        factors.rows().copy_from_slice(&[0.0, 1.0, 2.0, 0.0]);
-        assert!(factors.factor(&mut []));
-        let mut x = [3.0, 8.0];
+        assert!(factors.factor(&mut padded(&[0.0, 1.0, 2.0, 0.0], 2)));
+        let mut x = [3.0, 8.0, 0.0, 0.0];
         factors.forward(&mut x);
         factors.backward(&mut x);
-        assert_eq!(x, [4.0, 3.0]);
+        assert_eq!(x[..2], [4.0, 3.0]);
     }
 
     #[test]
@@ -329,8 +335,8 @@ mod tests {
         for kind in [FactorKind::Symmetric, FactorKind::General] {
             let mut factors = PartialFactors::new(kind, 2, 2);
             for first in [1.0, f64::NAN] {
-                factors.rows().copy_from_slice(&[first, 2.0, 2.0, 4.0]);
-                assert!(!factors.factor(&mut []));
+                let mut matrix = padded(&[first, 2.0, 2.0, 4.0], 2);
+                assert!(!factors.factor(&mut matrix));
             }
         }
     }

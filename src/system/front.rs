@@ -1,6 +1,6 @@
-//! One slice of the sheet as a small dense matrix: filled, its inside eliminated, what is left handed on.
+//! One slice of the sheet as a small dense matrix: filled, some unknowns eliminated, what is left handed on.
 
-use std::ops::Range;
+use std::array;
 
 use petsc::FactorKind;
 
@@ -8,37 +8,31 @@ use super::condensation::{CondensedEntries, CondensedPattern};
 use super::dense::PartialFactors;
 use super::elimination_order::EliminationOrder;
 
-/// A slice: the unknowns inside it, then those on its ends.
+/// The unknowns that no later slice touches, then the others of the slice and of what was left before it.
 pub(super) struct Front {
-    kind: FactorKind,
     unknowns: Vec<usize>,
-    inside: usize,
     factors: PartialFactors,
-    /// In the first layer: number of an entry of an element or of another one, and where in the matrix it is added.
-    elements: Vec<[u32; 2]>,
-    others: Vec<[u32; 2]>,
-    /// In the others: what slices of the layer below left.
-    parts: Vec<Part>,
-    /// Where what it leaves itself lies among the values of its layer.
-    left: Range<usize>,
+    /// Where entries of elements are added, and those of contact points and supports.
+    elements: Places<16>,
+    others: Places<6>,
+    /// Where what the slice before left is in the matrix.
+    before: Vec<Run>,
 }
 
-/// Where a front finds its entries.
-#[derive(Clone, Copy)]
-pub(super) enum Below<'a> {
-    /// Those of the pattern, for the first layer.
-    Entries(CondensedEntries<'a>),
-    /// The values of the layer below.
-    Layer(&'a [f64]),
+/// Where entries are added: those between N unknowns together, as their places in the front are all that it takes, and
+/// where some are left out or alone one by one.
+struct Places<const N: usize> {
+    blocks: Vec<Block<N>>,
+    entries: Vec<[u32; 2]>,
 }
 
-/// What a slice of the layer below left.
-struct Part {
-    values: Range<usize>,
-    runs: Vec<Run>,
+/// The number of its first entry, and the places of its unknowns.
+struct Block<const N: usize> {
+    first: usize,
+    unknowns: [u32; N],
 }
 
-/// Unknowns that follow each other in the part and in the front.
+/// Unknowns that follow each other in what was left and in the front.
 struct Run {
     from: usize,
     to: usize,
@@ -46,137 +40,124 @@ struct Run {
 }
 
 impl Front {
-    /// The slices of the first layer.
-    pub(super) fn of_entries(
+    /// One for each slice, in the order of their elimination, and the numbers of the entries that none of them takes.
+    pub(super) fn all(
         pattern: &CondensedPattern,
         order: &EliminationOrder,
         kind: FactorKind,
-    ) -> Vec<Self> {
+    ) -> (Vec<Self>, Vec<usize>) {
         let count = pattern.slices.iter().max().map_or(0, |last| last + 1);
-        let mut slices = vec![Vec::new(); count];
+        let mut step = vec![None; count];
+        for (place, &slice) in order.slices.iter().enumerate() {
+            step[slice] = Some(place);
+        }
+        let mut entries = vec![Vec::new(); order.slices.len()];
+        let mut passed = Vec::new();
         let indices = pattern.rows.iter().zip(&pattern.columns);
         for (number, ((&row, &column), &slice)) in indices.zip(&pattern.slices).enumerate() {
-            if let (Ok(row), Ok(column)) = (usize::try_from(row), usize::try_from(column)) {
-                let upper = order.place[row] <= order.place[column];
-                if upper || kind == FactorKind::General {
-                    slices[slice].push((number, row, column));
-                }
+            let (Ok(row), Ok(column)) = (usize::try_from(row), usize::try_from(column)) else {
+                continue;
+            };
+            match step[slice] {
+                None => passed.push(number),
+                Some(step) => entries[step].push((number, row, column)),
             }
         }
         let mut place = vec![0; order.place.len()];
-        let fronts = slices.into_iter().map(|entries| {
+        let mut fronts: Vec<Self> = Vec::with_capacity(entries.len());
+        for (step, entries) in entries.into_iter().enumerate() {
             // Each unknown has an entry on the diagonal.
-            let unknowns = entries.iter().map(|&(_, row, _)| row).collect();
-            let mut front = Self::of(unknowns, order, 0, kind);
+            let unknowns = entries.iter().map(|&(_, row, _)| row);
+            let mut front = Self::new(unknowns, fronts.last(), order, step, kind);
             for (new, &old) in front.unknowns.iter().enumerate() {
                 place[old] = new;
             }
-            let size = front.unknowns.len();
-            for (number, row, column) in entries {
-                let place = (place[row] * size + place[column]) as u32;
-                match number.checked_sub(pattern.elements) {
-                    None => front.elements.push([number as u32, place]),
-                    Some(number) => front.others.push([number as u32, place]),
-                }
-            }
-            front
-        });
-        fronts.collect()
+            let (stride, elements) = (front.stride(), pattern.elements);
+            let places = entries
+                .iter()
+                .map(|&(number, row, column)| (number, place[row], place[column]));
+            let (of_elements, of_others): (Vec<_>, Vec<_>) =
+                places.partition(|&(number, ..)| number < elements);
+            front.elements = Places::new(&of_elements, 0, stride);
+            front.others = Places::new(&of_others, elements, stride);
+            fronts.push(front);
+        }
+        (fronts, passed)
     }
 
-    /// A slice of a layer, made of these neighbours in the layer below.
-    pub(super) fn of_parts(
-        parts: &[Self],
+    fn new(
+        unknowns: impl Iterator<Item = usize>,
+        before: Option<&Self>,
         order: &EliminationOrder,
-        layer: usize,
+        step: usize,
         kind: FactorKind,
     ) -> Self {
-        let unknowns = parts.iter().flat_map(Self::outer).copied().collect();
-        let mut front = Self::of(unknowns, order, layer, kind);
-        let parts = parts.iter().map(|part| Part {
-            values: part.left.clone(),
-            runs: Run::all(part.outer(), &front.unknowns, order),
-        });
-        front.parts = parts.collect();
-        front
-    }
-
-    fn of(
-        mut unknowns: Vec<usize>,
-        order: &EliminationOrder,
-        layer: usize,
-        kind: FactorKind,
-    ) -> Self {
+        let carried = before.map_or(&[][..], Self::outer);
+        let mut unknowns: Vec<usize> = unknowns.chain(carried.iter().copied()).collect();
         unknowns.sort_unstable_by_key(|&unknown| order.place[unknown]);
         unknowns.dedup();
-        let inside = unknowns.partition_point(|&unknown| order.layer[unknown] <= layer);
+        let inside = unknowns.partition_point(|&unknown| order.step[unknown] == Some(step));
         Self {
-            kind,
             factors: PartialFactors::new(kind, inside, unknowns.len()),
+            before: Run::all(carried, &unknowns, order),
             unknowns,
-            inside,
-            elements: Vec::new(),
-            others: Vec::new(),
-            parts: Vec::new(),
-            left: 0..0,
+            elements: Places::default(),
+            others: Places::default(),
         }
     }
 
-    pub(super) fn unknowns(&self) -> &[usize] {
-        &self.unknowns
-    }
-
-    /// The unknowns on its ends.
+    /// The unknowns that are left for later slices.
     pub(super) fn outer(&self) -> &[usize] {
-        &self.unknowns[self.inside..]
+        &self.unknowns[self.factors.eliminated()..]
     }
 
-    /// Puts what it leaves at this place among the values of its layer, and returns the next one.
-    pub(super) fn leave_from(&mut self, start: usize) -> usize {
-        self.left = start..start + self.outer().len().pow(2);
-        self.left.end
+    /// How far rows of its matrix are apart, and the length of its part of a vector.
+    pub(super) fn stride(&self) -> usize {
+        self.factors.stride()
     }
 
-    /// From the entries of the pattern or the values of the layer below to those of its own layer; of a symmetric matrix
-    /// the upper triangle only. `rows` is room for the rows of the unknowns on the ends. Says whether that could be done.
+    /// The length of its matrix.
+    pub(super) fn room(&self) -> usize {
+        self.unknowns.len() * self.stride()
+    }
+
+    /// Eliminates, for the entries of the pattern and what the slice before left, in place of which it puts what it leaves
+    /// itself, row by row; of a symmetric matrix only the upper triangle counts. `matrix` is room for its own. Says whether that
+    /// could be done.
     pub(super) fn eliminate(
         &mut self,
-        below: Below<'_>,
-        rows: &mut [f64],
-        values: &mut [f64],
+        entries: CondensedEntries<'_>,
+        left: &mut [f64],
+        matrix: &mut [f64],
     ) -> bool {
-        let (size, outer) = (self.unknowns.len(), self.outer().len());
-        let rows = &mut rows[..outer * size];
-        let inside = self.factors.rows();
-        inside.fill(0.0);
-        rows.fill(0.0);
-        match below {
-            Below::Entries(entries) => {
-                add(&self.elements, entries.elements, inside, rows);
-                add(&self.others, entries.others, inside, rows);
-            }
-            Below::Layer(below) => {
-                for part in &self.parts {
-                    part.add(&below[part.values.clone()], [inside, rows], size, self.kind);
-                }
-            }
-        }
-        let usable = self.factors.factor(rows);
-        let left = values[self.left.clone()].chunks_exact_mut(outer.max(1));
-        for (i, (left, row)) in left.zip(rows.chunks_exact(size.max(1))).enumerate() {
-            let first = first_column(self.kind, i);
-            left[first..].copy_from_slice(&row[self.inside + first..]);
+        let matrix = &mut matrix[..self.room()];
+        matrix.fill(0.0);
+        self.add_before(left, matrix);
+        self.elements.add(entries.elements, matrix, self.stride());
+        self.others.add(entries.others, matrix, self.stride());
+        let usable = self.factors.factor(matrix);
+        let (inside, outer) = (self.factors.eliminated(), self.outer().len());
+        let rows = matrix.chunks_exact(self.stride().max(1)).skip(inside);
+        for (left, row) in left.chunks_exact_mut(outer.max(1)).zip(rows) {
+            left.copy_from_slice(&row[inside..inside + outer]);
         }
         usable
     }
 
-    /// Completes what it left of a symmetric matrix below the diagonal.
-    pub(super) fn mirror(&self, values: &mut [f64]) {
-        let outer = self.outer().len();
-        let left = &mut values[self.left.clone()];
-        for i in 0..outer {
-            for j in 0..i {
-                left[i * outer + j] = left[j * outer + i];
+    /// Adds what the slice before left.
+    fn add_before(&self, left: &[f64], matrix: &mut [f64]) {
+        let size: usize = self.before.iter().map(|run| run.length).sum();
+        for rows in &self.before {
+            for offset in 0..rows.length {
+                let row = rows.from + offset;
+                let source = &left[row * size..][..size];
+                let target = &mut matrix[(rows.to + offset) * self.stride()..];
+                for run in &self.before {
+                    let source = &source[run.from..][..run.length];
+                    for (sum, value) in target[run.to..].iter_mut().zip(source) {
+                        *sum += value;
+                    }
+                }
             }
         }
     }
@@ -188,7 +169,8 @@ impl Front {
         part: &mut [f64],
         substitute: impl Fn(&PartialFactors, &mut [f64]),
     ) {
-        let part = &mut part[..self.unknowns.len()];
+        let part = &mut part[..self.stride()];
+        part[self.unknowns.len()..].fill(0.0);
         for (value, &unknown) in part.iter_mut().zip(&self.unknowns) {
             *value = all[unknown];
         }
@@ -199,49 +181,65 @@ impl Front {
     }
 }
 
-/// Adds entries to a front: to rows inside it or on its ends.
-fn add(places: &[[u32; 2]], entries: &[f64], inside: &mut [f64], ends: &mut [f64]) {
-    for &[number, place] in places {
-        let (value, place) = (entries[number as usize], place as usize);
-        match place.checked_sub(inside.len()) {
-            None => inside[place] += value,
-            Some(place) => ends[place] += value,
+impl<const N: usize> Places<N> {
+    /// For numbers of entries, ascending, with row and column in the front; the numbers are counted from `first` on, and
+    /// N x N that follow each other from a multiple of it are those between N unknowns, row by row.
+    fn new(entries: &[(usize, usize, usize)], first: usize, stride: usize) -> Self {
+        let mut places = Self::default();
+        let blocks = entries.chunk_by(|a, b| (a.0 - first) / (N * N) == (b.0 - first) / (N * N));
+        for block in blocks {
+            let number = block[0].0 - first;
+            let unknowns: [u32; N] = array::from_fn(|i| block.get(i).map_or(0, |e| e.2 as u32));
+            let whole = block.len() == N * N
+                && block.iter().enumerate().all(|(at, &(_, row, column))| {
+                    [row as u32, column as u32] == [unknowns[at / N], unknowns[at % N]]
+                });
+            if whole {
+                places.blocks.push(Block {
+                    first: number,
+                    unknowns,
+                });
+            } else {
+                let single = block.iter().map(|&(number, row, column)| {
+                    [(number - first) as u32, (row * stride + column) as u32]
+                });
+                places.entries.extend(single);
+            }
+        }
+        places
+    }
+
+    /// Adds entries to a matrix. Of a symmetric one the lower triangle is filled, too, though nobody reads it.
+    fn add(&self, entries: &[f64], matrix: &mut [f64], stride: usize) {
+        for Block { first, unknowns } in &self.blocks {
+            let rows = entries[*first..].chunks_exact(N);
+            for (&row, values) in unknowns.iter().zip(rows) {
+                let sums = &mut matrix[row as usize * stride..][..stride];
+                for (&column, value) in unknowns.iter().zip(values) {
+                    sums[column as usize] += value;
+                }
+            }
+        }
+        for &[number, place] in &self.entries {
+            matrix[place as usize] += entries[number as usize];
         }
     }
 }
 
-impl Part {
-    /// Adds it to a front: rows inside it and on its ends.
-    fn add(&self, values: &[f64], [inside, ends]: [&mut [f64]; 2], size: usize, kind: FactorKind) {
-        let width = self.runs.iter().map(|run| run.length).sum();
-        for rows in &self.runs {
-            for offset in 0..rows.length {
-                let row = rows.from + offset;
-                let source = &values[row * width..][..width];
-                let target = (rows.to + offset) * size;
-                let target = match target.checked_sub(inside.len()) {
-                    None => &mut inside[target..][..size],
-                    Some(target) => &mut ends[target..][..size],
-                };
-                let first = first_column(kind, row);
-                for run in self.runs.iter().filter(|run| run.from + run.length > first) {
-                    let skip = first.saturating_sub(run.from);
-                    let source = &source[run.from + skip..run.from + run.length];
-                    let target = &mut target[run.to + skip..run.to + run.length];
-                    for (sum, value) in target.iter_mut().zip(source) {
-                        *sum += value;
-                    }
-                }
-            }
+impl<const N: usize> Default for Places<N> {
+    fn default() -> Self {
+        Self {
+            blocks: Vec::new(),
+            entries: Vec::new(),
         }
     }
 }
 
 impl Run {
-    /// How the unknowns of a part lie among those of a front, both in their order.
-    fn all(part: &[usize], front: &[usize], order: &EliminationOrder) -> Vec<Self> {
+    /// How the unknowns left before lie among those of a front, both in their order.
+    fn all(before: &[usize], front: &[usize], order: &EliminationOrder) -> Vec<Self> {
         let mut runs: Vec<Self> = Vec::new();
-        for (from, unknown) in part.iter().enumerate() {
+        for (from, unknown) in before.iter().enumerate() {
             let place = order.place[*unknown];
             let to = front.partition_point(|&other| order.place[other] < place);
             match runs.last_mut().filter(|run| run.to + run.length == to) {
@@ -254,13 +252,5 @@ impl Run {
             }
         }
         runs
-    }
-}
-
-/// The first column of a row that counts.
-fn first_column(kind: FactorKind, row: usize) -> usize {
-    match kind {
-        FactorKind::General => 0,
-        FactorKind::Symmetric => row,
     }
 }

@@ -1,98 +1,82 @@
 //! Slices of the sheet eliminated by dense matrices, before a sparse solver sees what is left.
 //!
-//! A sheet is long and thin: neighbouring columns of elements share one line of nodes across it and nothing else. What lies
-//! inside each column is eliminated at once, then the line between two columns, then the one between two pairs of columns,
-//! and so on (nested dissection; George 1973, SIAM J. Numer. Anal. 10, 345-363). With I the unknowns inside a slice and O
-//! those on its ends, a slice leaves for the next layer
+//! A sheet is long and thin: neighbouring columns of elements share one line of nodes across it and nothing else. So the
+//! matrix is block tridiagonal, and one column after the other is eliminated, with the line to those before it (the frontal
+//! method; Irons 1970, Int. J. Numer. Methods Eng. 2, 5-32). With I the unknowns that no later slice touches and O the others
+//! of a front, it leaves for the next one
 //!
 //! ```text
 //! A_OO - A_OI A_II⁻¹ A_IO   and   b_O - A_OI A_II⁻¹ b_I,   and then   x_I = A_II⁻¹ (b_I - A_IO x_O)
 //! ```
 //!
-//! A sparse solver finds the same pieces by itself, but in fronts of some six pivots each, and sorts the entries into them
-//! anew in every factorisation.
+//! A sparse solver, which does not know of the columns, works in fronts of some six pivots each, and sorts the entries into
+//! them anew in every factorisation.
 
 use petsc::FactorKind;
 
 use super::condensation::{CondensedEntries, CondensedPattern};
 use super::dense::PartialFactors;
 use super::elimination_order::EliminationOrder;
-use super::front::{Below, Front};
+use super::front::Front;
 
-/// The elimination on one rank, layer by layer.
+/// The elimination on one rank, slice after slice.
 pub(super) struct Fronts {
     kind: FactorKind,
-    layers: Vec<Layer>,
-    /// The entries themselves, where there is no layer.
-    untouched: Vec<f64>,
-    /// Unknowns that no layer eliminates.
-    left: Vec<usize>,
-    /// Rows of one front, and its part of a right-hand side.
-    rows: Vec<f64>,
-    vector: Vec<f64>,
-}
-
-struct Layer {
     fronts: Vec<Front>,
-    /// The entries it leaves, front by front and row by row.
-    values: Vec<f64>,
+    /// Numbers of the entries that no front takes.
+    passed: Vec<usize>,
+    /// The entries that are left: these, then those of the last front row by row.
+    rest: Vec<f64>,
+    /// Unknowns that no front eliminates.
+    left: Vec<usize>,
+    /// Of one front at a time: its matrix, what it leaves, and its part of a vector.
+    matrix: Vec<f64>,
+    left_over: Vec<f64>,
+    vector: Vec<f64>,
 }
 
 impl Fronts {
     /// For the pattern of one rank's entries, of whose unknowns those `kept` are not eliminated. Returns the pattern of what
     /// is left, its unknowns numbered as in [`Fronts::left`].
     pub(super) fn new(
-        pattern: CondensedPattern,
+        pattern: &CondensedPattern,
         kept: &[bool],
         kind: FactorKind,
     ) -> (Self, CondensedPattern) {
-        let order = EliminationOrder::new(&pattern, kept);
-        let mut layers = Vec::with_capacity(order.layers);
-        if order.layers > 0 {
-            layers.push(Layer::new(Front::of_entries(&pattern, &order, kind)));
-        }
-        while let Some(below) = layers.last().filter(|_| layers.len() < order.layers) {
-            let pairs = below.fronts.chunks(2);
-            let layer = layers.len();
-            let fronts = pairs.map(|pair| Front::of_parts(pair, &order, layer, kind));
-            layers.push(Layer::new(fronts.collect()));
-        }
-        let fronts = layers.iter().flat_map(|layer| &layer.fronts);
-        let largest = fronts
-            .map(|front| front.unknowns().len())
-            .max()
-            .unwrap_or(0);
-        let left = order.left;
-        let mut place = vec![-1; kept.len()];
-        for (new, &old) in left.iter().enumerate() {
-            place[old] = new as i32;
-        }
-        let mut rest = pattern;
-        if let Some(last) = layers.last() {
-            rest = CondensedPattern::default();
-            for front in &last.fronts {
-                for &row in front.outer() {
-                    rest.rows.extend(front.outer().iter().map(|_| row as i32));
-                    let columns = front.outer().iter().map(|&column| column as i32);
-                    rest.columns.extend(columns);
-                }
-            }
-        }
-        for index in rest.rows.iter_mut().chain(&mut rest.columns) {
-            *index = usize::try_from(*index).map_or(-1, |old| place[old]);
-        }
-        let untouched = if layers.is_empty() {
-            rest.rows.len()
-        } else {
-            0
+        let order = EliminationOrder::new(pattern, kept);
+        let (fronts, passed) = Front::all(pattern, &order, kind);
+        let outer = fronts.last().map_or(&[][..], Front::outer);
+        let place = |unknown: usize| match order.step[unknown] {
+            None => (order.place[unknown] + order.left.len() - kept.len()) as i32,
+            Some(_) => -1,
         };
+        let passed_on = |indices: &[i32]| -> Vec<i32> {
+            let indices = passed.iter().map(|&number| indices[number]);
+            let places = indices.map(|index| usize::try_from(index).map_or(-1, place));
+            places.collect()
+        };
+        let mut rest = CondensedPattern {
+            rows: passed_on(&pattern.rows),
+            columns: passed_on(&pattern.columns),
+            ..CondensedPattern::default()
+        };
+        for &row in outer {
+            rest.rows.extend(outer.iter().map(|_| place(row)));
+            rest.columns
+                .extend(outer.iter().map(|&column| place(column)));
+        }
+        let room = |size: fn(&Front) -> usize| fronts.iter().map(size).max().unwrap_or(0);
+        let (matrix, vector) = (room(Front::room), room(Front::stride));
+        let outer = room(|front| front.outer().len());
         let this = Self {
             kind,
-            rows: vec![0.0; largest * largest],
-            vector: vec![0.0; largest],
-            untouched: vec![0.0; untouched],
-            layers,
-            left,
+            passed,
+            rest: vec![0.0; rest.rows.len()],
+            matrix: vec![0.0; matrix],
+            left_over: vec![0.0; outer * outer],
+            vector: vec![0.0; vector],
+            left: order.left,
+            fronts,
         };
         (this, rest)
     }
@@ -104,50 +88,39 @@ impl Fronts {
 
     /// Eliminates for entries in the order of the pattern. Returns those that are left, none if a front is singular.
     pub(super) fn eliminate(&mut self, entries: CondensedEntries<'_>) -> Option<&[f64]> {
-        let last = self.layers.len();
-        if last == 0 {
-            entries.copy_to(&mut self.untouched);
-            return Some(&self.untouched);
-        }
-        let mut below = Below::Entries(entries);
-        for (number, Layer { fronts, values }) in self.layers.iter_mut().enumerate() {
-            let mirrored = self.kind == FactorKind::Symmetric && number + 1 == last;
-            for front in fronts {
-                if !front.eliminate(below, &mut self.rows, values) {
-                    return None;
-                }
-                if mirrored {
-                    front.mirror(values);
-                }
+        for front in &mut self.fronts {
+            if !front.eliminate(entries, &mut self.left_over, &mut self.matrix) {
+                return None;
             }
-            below = Below::Layer(values);
         }
-        self.layers.last().map(|layer| &layer.values[..])
+        let (passed, last) = self.rest.split_at_mut(self.passed.len());
+        for (value, &number) in passed.iter_mut().zip(&self.passed) {
+            *value = entries.get(number);
+        }
+        let size = self.fronts.last().map_or(0, |front| front.outer().len());
+        for (at, value) in last.iter_mut().enumerate() {
+            let [i, j] = [at / size, at % size];
+            let upper = match self.kind {
+                FactorKind::Symmetric => i.min(j) * size + i.max(j),
+                FactorKind::General => at,
+            };
+            *value = self.left_over[upper];
+        }
+        Some(&self.rest)
     }
 
     /// Takes the right-hand side `b` to that of the unknowns left; in the others' places it keeps what
     /// [`Fronts::backward`] needs.
     pub(super) fn forward(&mut self, b: &mut [f64]) {
-        for front in self.layers.iter().flat_map(|layer| &layer.fronts) {
+        for front in &self.fronts {
             front.visit(b, &mut self.vector, PartialFactors::forward);
         }
     }
 
     /// Completes the solution `x` of the unknowns left.
     pub(super) fn backward(&mut self, x: &mut [f64]) {
-        for front in self.layers.iter().rev().flat_map(|layer| &layer.fronts) {
+        for front in self.fronts.iter().rev() {
             front.visit(x, &mut self.vector, PartialFactors::backward);
         }
-    }
-}
-
-impl Layer {
-    fn new(mut fronts: Vec<Front>) -> Self {
-        let mut size = 0;
-        for front in &mut fronts {
-            size = front.leave_from(size);
-        }
-        let values = vec![0.0; size];
-        Self { fronts, values }
     }
 }

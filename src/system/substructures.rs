@@ -66,7 +66,7 @@ impl Substructures {
         let foreign = shared.iter().filter(|shared| !shared.owned);
         let foreign = foreign.map(|shared| shared.unknown).collect();
 
-        let (fronts, pattern) = Fronts::new(pattern, &kept, kind);
+        let (fronts, pattern) = Fronts::new(&pattern, &kept, kind);
         let size = fronts.left().len();
         let alone = SimpleCommunicator::self_comm();
         let mut matrix = Matrix::from_coo(&alone, size, &pattern.rows, &pattern.columns)?;
