@@ -7,7 +7,7 @@ use mpi::traits::{Communicator, CommunicatorCollectives};
 
 use super::collective::write_rows;
 use super::datasets::{extendable, fixed, write_unit, write_values};
-use super::steps::{OF_ALL_ARRAYS, StepTable};
+use super::steps::{self, StepTable};
 use super::types::{ArraySpec, Kind, Part, Values};
 use crate::output::space::BESIDE_VALUES;
 
@@ -69,9 +69,9 @@ impl Layout {
         let values = 3 * size_of::<f64>() * self.total_points
             + of_a_cell * self.total_cells
             + size_of::<i64>() * (self.total_connectivity + self.total_cells + 4 * self.ranks);
-        // Each array has its own, and one in the table of steps.
+        // Each array has its own, and a name in the table of steps.
         let arrays = point_arrays.len() + cell_arrays.len();
-        let datasets = OF_THE_MESH + OF_ALL_ARRAYS + 2 * arrays;
+        let datasets = OF_THE_MESH + steps::DATASETS + 2 * arrays;
         values as u64 + BESIDE_VALUES * datasets as u64
     }
 

@@ -1,6 +1,5 @@
 //! The table of steps of a VTKHDF file: for each step its time, and where its data start.
 
-use hdf5::plist::dataset_create::FillTime;
 use hdf5::{Attribute, Dataset, Group, H5Type};
 
 use super::collective::write_rows;
@@ -10,17 +9,17 @@ use crate::output::space::BESIDE_VALUES;
 
 /// Steps per chunk of the step table: small enough to waste nothing, large enough for a whole run in a few chunks.
 const STEPS_PER_CHUNK: usize = 512;
-/// Datasets of the table besides one for each array: times, numbers of parts, and where parts, points, cells and
-/// connectivity start.
-pub(super) const OF_ALL_ARRAYS: usize = 6;
+/// Datasets of the table: times, where point data start, and what is the same in every step.
+pub(super) const DATASETS: usize = 5;
 
 /// `Steps`: for each step its time and where its data start. The mesh starts at 0 for every step.
+///
+/// What many arrays have in common is one dataset with a name for each of them (hard links), and what every step has in
+/// common is a dataset that only grows: its fill value is what it holds.
 pub(super) struct StepTable {
     times: Dataset,
-    zeros: Vec<Dataset>,
-    parts: Dataset,
-    point_offsets: Vec<Dataset>,
-    ranks: usize,
+    point_offsets: Option<Dataset>,
+    constants: [Dataset; 3],
 }
 
 impl StepTable {
@@ -35,39 +34,34 @@ impl StepTable {
         let count = steps.new_attr::<i64>().create("NSteps")?;
         count.write_scalar(&0_i64)?;
         let times = extendable::<f64>(&steps, "Values", 1, STEPS_PER_CHUNK)?;
-        let parts = extendable::<i64>(&steps, "NumberOfParts", 1, STEPS_PER_CHUNK)?;
-        let mut zeros = Vec::new();
-        for name in ["PartOffsets", "PointOffsets"] {
-            zeros.push(extendable::<i64>(&steps, name, 1, STEPS_PER_CHUNK)?);
-        }
-        for name in ["CellOffsets", "ConnectivityIdOffsets"] {
-            let builder = steps.new_dataset::<i64>().chunk((STEPS_PER_CHUNK, 1));
-            zeros.push(
-                builder
-                    .fill_time(FillTime::Never)
-                    .shape((0.., 1))
-                    .create(name)?,
-            );
-        }
-        let cell_offsets = steps.create_group("CellDataOffsets")?;
+        let builder = || steps.new_dataset::<i64>();
+        let parts = builder().chunk(STEPS_PER_CHUNK).fill_value(ranks as i64);
+        let parts = parts.shape(0..).create("NumberOfParts")?;
+        let zeros = builder().chunk(STEPS_PER_CHUNK).fill_value(0_i64);
+        let zeros = zeros.shape(0..).create("PartOffsets")?;
+        let zero_rows = builder().chunk((STEPS_PER_CHUNK, 1)).fill_value(0_i64);
+        let zero_rows = zero_rows.shape((0.., 1)).create("CellOffsets")?;
+        steps.link_hard("PartOffsets", "PointOffsets")?;
+        steps.link_hard("CellOffsets", "ConnectivityIdOffsets")?;
+        steps.create_group("CellDataOffsets")?;
         for name in cell_arrays {
-            zeros.push(extendable::<i64>(&cell_offsets, name, 1, STEPS_PER_CHUNK)?);
+            steps.link_hard("PartOffsets", &format!("CellDataOffsets/{name}"))?;
         }
         let offsets = steps.create_group("PointDataOffsets")?;
-        let point_offsets = point_arrays
-            .iter()
-            .map(|spec| extendable::<i64>(&offsets, spec.name, 1, STEPS_PER_CHUNK));
-        let point_offsets = point_offsets.collect::<hdf5::Result<_>>()?;
-        Ok((
-            Self {
-                times,
-                zeros,
-                parts,
-                point_offsets,
-                ranks,
-            },
-            count,
-        ))
+        let mut point_offsets = None;
+        if let Some((first, others)) = point_arrays.split_first() {
+            let offset = extendable::<i64>(&offsets, first.name, 1, STEPS_PER_CHUNK)?;
+            point_offsets = Some(offset);
+            for other in others {
+                offsets.link_hard(first.name, other.name)?;
+            }
+        }
+        let this = Self {
+            times,
+            point_offsets,
+            constants: [parts, zeros, zero_rows],
+        };
+        Ok((this, count))
     }
 
     /// What it can grow by with step number `step` (counted from 0), bytes: its chunks are begun together.
@@ -75,9 +69,8 @@ impl StepTable {
         if step % STEPS_PER_CHUNK != 0 {
             return 0;
         }
-        let datasets = 2 + self.zeros.len() + self.point_offsets.len();
         let chunk = STEPS_PER_CHUNK * size_of::<f64>();
-        datasets as u64 * (chunk as u64 + BESIDE_VALUES)
+        DATASETS as u64 * (chunk as u64 + BESIDE_VALUES)
     }
 
     /// Adds the row of step number `step` (counted from 0) whose point data start at row `first_row`. Collective;
@@ -90,16 +83,12 @@ impl StepTable {
         writes: bool,
     ) -> Result<(), String> {
         let mut results = vec![append_one(&self.times, step, t_ms, writes)];
-        results.push(append_one(&self.parts, step, self.ranks as i64, writes));
+        let offsets = self.point_offsets.iter();
+        results.extend(offsets.map(|offsets| append_one(offsets, step, first_row, writes)));
         results.extend(
-            self.zeros
+            self.constants
                 .iter()
-                .map(|dataset| append_one(dataset, step, 0_i64, writes)),
-        );
-        results.extend(
-            self.point_offsets
-                .iter()
-                .map(|dataset| append_one(dataset, step, first_row, writes)),
+                .map(|dataset| extend(dataset, step + 1)),
         );
         results.into_iter().collect()
     }
