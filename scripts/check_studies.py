@@ -17,7 +17,7 @@ import numpy
 from studies import analysis, plan
 
 SCRIPTS = pathlib.Path(__file__).resolve().parent
-TINY = ["-options_file", "inputs/fastest.opts", "-sheet_nx", "20", "-sheet_ny", "2", "-stroke", "0.2", "-time_load", "6.4",
+TINY = ["-options_file", "inputs/band.opts", "-sheet_nx", "20", "-sheet_ny", "2", "-stroke", "0.2", "-time_load", "6.4",
         "-time_unload", "1"]
 PROBLEMS = []
 

@@ -19,7 +19,7 @@ run() {
     [ -e "$folder/$name/summary.json" ] && return
     echo "run: $name: $*" >&2
     # A run whose verdicts fail is a result, too.
-    "$program" -options_file inputs/fastest.opts -output_every 0 -output_dir "$folder/$name" "$@" >"$folder/$name.log" 2>&1 || true
+    "$program" -options_file inputs/band.opts -output_every 0 -output_dir "$folder/$name" "$@" >"$folder/$name.log" 2>&1 || true
 }
 noisy() {
     local name=$1

@@ -36,7 +36,7 @@ SETUPS = {
     "default": ([], 1, r"."),
     "petsc-lu": (["-pc_type", "lu"], 1, r"^(mat|pc|ksp|snes_ksp)_"),
     "gmres": (["-pc_type", "bjacobi", "-sub_pc_type", "lu", "-ksp_type", "gmres"], 1, r"^(sub_)?(mat|pc|ksp)_|snes_ksp_ew$"),
-    "fastest": (["-options_file", str(ROOT / "inputs/fastest.opts")], 1, r"^condensed_(mat|pc)_"),
+    "band": (["-options_file", str(ROOT / "inputs/band.opts")], 1, r"^condensed_(mat|pc)_"),
     "line search": (["-snes_linesearch_type", "l2"], 1, r"^snes_linesearch_"),
     "backtracking": (["-snes_linesearch_type", "bt"], 1, r"^snes_linesearch_"),
     "statics": (["-dynamics", "none"], 1, r"^ts_"),

@@ -53,7 +53,7 @@ def make(case, only):
         if case == "friction":
             changed = [*changed, "-fixed_steps_unload", BACK[name]]
         every = "2" if name == "reference" else "0"
-        command = [PROGRAM, "-options_file", CASES[case], "-options_file", "inputs/released.opts", "-options_file", "inputs/fastest.opts",
+        command = [PROGRAM, "-options_file", CASES[case], "-options_file", "inputs/released.opts", "-options_file", "inputs/band.opts",
                    *REPORTED, "-dt_max", "9", *changed, "-output_every", every, "-overwrite", "-output_dir", str(folder)]
         print("run:", *command[1:], file=sys.stderr, flush=True)
         subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL, check=False)

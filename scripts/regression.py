@@ -3,7 +3,7 @@
 
   scripts/regression.py [--write]
 
-Runs each case on one rank with the band solver (inputs/fastest.opts), whose values go to the file, on one rank with MUMPS,
+Runs each case on one rank with the band solver (inputs/band.opts), whose values go to the file, on one rank with MUMPS,
 and the first one on 2 ranks, which change nothing but rounding. The tolerance of a value is 1e-8 of it, and ten
 times the spread of the runs, rounded up to 1, 2 or 5, where that is more: after d = 20 mm the sheet snaps through between
 punch and die, and rounding decides on the steps. Where it does, three runs are few to know by how much: twice the spread
@@ -23,7 +23,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAM = os.environ.get("SSNP155", str(ROOT / "target/release/ssnp155"))
 RESULTS = ROOT / "results-regression"
 CASES = ["ssnp155", "ssnp155-friction", "ssnp155-springback", "ssnp155-friction-springback"]
-BAND = ["-options_file", "inputs/fastest.opts"]
+BAND = ["-options_file", "inputs/band.opts"]
 VARIANTS = {"band": (1, BAND), "mumps": (1, []), "2-ranks": (2, [])}
 # Other steps, for the values whose steps rounding decides on.
 STEPS = {f"dt_max-{dt}": (1, [*BAND, "-dt_max", dt]) for dt in ("8.5", "8", "7.5")}
@@ -37,7 +37,7 @@ HEAD = """\
 # What this program itself finds for the cases in inputs/: regression, not reference (those are in values.csv and
 # values-friction.csv). "case" is the name of the option file; a run whose physics, mesh and steps are exactly the file's is
 # compared, whatever its linear solver and number of ranks. Columns as there; a tolerance is a share of the value.
-# Measured by `scripts/regression.py --write` on one rank with inputs/fastest.opts. The tolerance is 1e-8 or, where it is more,
+# Measured by `scripts/regression.py --write` on one rank with inputs/band.opts. The tolerance is 1e-8 or, where it is more,
 # ten times the spread between that run, MUMPS and 2 ranks: from d = 20 mm on the sheet snaps through between punch and die,
 # and rounding decides on the steps. Where it does, twice the spread with other longest steps counts as well.
 case,id,quantity,unit,value,tolerance,when,source

@@ -21,7 +21,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAM = os.environ.get("SSNP155", str(ROOT / "target/release/ssnp155"))
 RESULTS = ROOT / "results-released-study"
-BASE = ["-options_file", "inputs/fastest.opts", "-options_file", "inputs/released.opts"]
+BASE = ["-options_file", "inputs/band.opts", "-options_file", "inputs/released.opts"]
 LOADING = ["-unload_fraction", "0"]
 BACK = ["-options_file", "inputs/released-friction.opts"]
 POINTS = "-contact_points_per_edge"

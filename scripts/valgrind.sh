@@ -41,5 +41,5 @@ small=(-sheet_nx 20 -sheet_ny 1 -stroke 0.1 -time_load 4 -time_unload 2 -output_
 program=${CARGO_TARGET_DIR:-target}/release/ssnp155
 check "$program" "${small[@]}"
 check "$program" "${small[@]}" -friction_coefficient 0.1342
-check "$program" "${small[@]}" -dynamics none -options_file inputs/fastest.opts
+check "$program" "${small[@]}" -dynamics none -options_file inputs/band.opts
 echo "valgrind: clean"

@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 mod mpi_environment;
 
 /// Four millimetres of the benchmark, at which the sheet yields, and what springs back.
-const SMALL: &str = "-options_file inputs/fastest.opts -sheet_nx 60 -sheet_ny 4 -stroke 4 -time_load 126 -unload_fraction 0 \
+const SMALL: &str = "-options_file inputs/band.opts -sheet_nx 60 -sheet_ny 4 -stroke 4 -time_load 126 -unload_fraction 0 \
                      -report_strokes 2,3";
 
 fn script(name: &str, words: &str) -> Output {

@@ -12,7 +12,7 @@ use ssnp155::run::fate_of_petsc_option;
 const SETUPS: [(&str, usize); 7] = [
     ("", 1),
     ("", 2),
-    ("-options_file inputs/fastest.opts", 1),
+    ("-options_file inputs/band.opts", 1),
     ("-pc_type lu", 1),
     (
         "-pc_type bjacobi -ksp_type gmres -snes_linesearch_type l2",

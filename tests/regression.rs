@@ -103,7 +103,7 @@ fn file() -> std::path::PathBuf {
 
 #[test]
 fn one_rank_finds_the_values_of_the_table_again() {
-    let options = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/fastest.opts");
+    let options = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/band.opts");
     let solver = ["-options_file", options.to_str().unwrap()];
     let found: Values = configurations()
         .iter()

@@ -9,7 +9,7 @@ use std::process::{Command, Output};
 use program::{FEW_CORES, scratch};
 
 /// A fifth of a millimetre on 20 x 2 elements: half a second.
-const TINY: &str = "-options_file inputs/fastest.opts -sheet_nx 20 -sheet_ny 2 -stroke 0.2 -time_load 6.4 -time_unload 1";
+const TINY: &str = "-options_file inputs/band.opts -sheet_nx 20 -sheet_ny 2 -stroke 0.2 -time_load 6.4 -time_unload 1";
 const PLAN: &str = "friction_coefficient=0,0.1342 sheet_thickness=0.95,1.05";
 const PROGRAM: &str = env!("CARGO_BIN_EXE_ssnp155");
 

@@ -9,7 +9,7 @@ use std::path::Path;
 use program::{history, run_into, scratch, summary};
 use tool_theory::Bending;
 
-const FASTEST: &str = "-options_file inputs/fastest.opts";
+const BAND: &str = "-options_file inputs/band.opts";
 const FILES: &str =
     "-punch_profile inputs/tools/benchmark-punch.csv -die_profile inputs/tools/benchmark-die.csv";
 /// The benchmark on a coarse mesh.
@@ -21,8 +21,8 @@ fn rows(folder: &Path) -> String {
 
 #[test]
 fn the_benchmarks_tools_from_files_give_the_same_bits() {
-    // The whole motion on one rank; on two a part of it, as the fastest solver is for one.
-    let whole = format!("{FASTEST} -friction_coefficient 0.1342");
+    // The whole motion on one rank; on two a part of it, as the band solver is for one.
+    let whole = format!("{BAND} -friction_coefficient 0.1342");
     for (ranks, more, least) in [(1, &whole[..], 100), (2, "-ts_max_steps 40", 40)] {
         let folder = scratch("tools-same");
         let (own, files) = (folder.join("own"), folder.join("files"));
@@ -82,7 +82,7 @@ fn air_bending_agrees_with_a_beam_in_force_angle_and_springback() {
     let ended = run_into(
         &folder,
         1,
-        &["-options_file inputs/air-bending.opts", FASTEST, mesh],
+        &["-options_file inputs/air-bending.opts", BAND, mesh],
     );
     assert_eq!(ended.code, Some(0), "{}", ended.text());
     let bending = Bending::new(12.0, 2.0);
@@ -131,11 +131,7 @@ fn air_bending_agrees_with_a_beam_in_force_angle_and_springback() {
 fn a_v_die_agrees_with_a_beam_before_it_closes_and_with_its_own_angle_after() {
     let folder = scratch("tools-v");
     let mesh = "-sheet_nx 30 -output_every 0";
-    let ended = run_into(
-        &folder,
-        1,
-        &["-options_file inputs/v-die.opts", FASTEST, mesh],
-    );
+    let ended = run_into(&folder, 1, &["-options_file inputs/v-die.opts", BAND, mesh]);
     assert_eq!(ended.code, Some(0), "{}", ended.text());
     // The shoulder of 3 mm turns by 45 degrees: its centre is 3 tan 22.5 beyond the corner at 12 mm.
     let shoulder = 12.0 + 3.0 * 22.5_f64.to_radians().tan();
