@@ -4,7 +4,7 @@ use hdf5::plist::dataset_create::FillTime;
 use hdf5::types::FixedAscii;
 use hdf5::{Dataset, Group, H5Type};
 
-use super::collective::write_rows;
+use super::collective::RowWriter;
 use super::types::{ArraySpec, Values};
 
 /// Sets the number of rows. Collective.
@@ -18,13 +18,14 @@ pub(super) fn extend(dataset: &Dataset, rows: usize) -> Result<(), String> {
 
 /// Writes this rank's values from row `first_row` on. Collective.
 pub(super) fn write_values(
+    writer: &RowWriter,
     dataset: &Dataset,
     first_row: usize,
     values: &Values,
 ) -> Result<(), String> {
     match values {
-        Values::F64(values) => write_rows(dataset, first_row, values),
-        Values::I32(values) => write_rows(dataset, first_row, values),
+        Values::F64(values) => writer.write(dataset, first_row, values),
+        Values::I32(values) => writer.write(dataset, first_row, values),
     }
 }
 

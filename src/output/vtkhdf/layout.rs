@@ -5,7 +5,7 @@ use hdf5::{Attribute, Dataset, File};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, CommunicatorCollectives};
 
-use super::collective::write_rows;
+use super::collective::RowWriter;
 use super::datasets::{extendable, fixed, write_unit, write_values};
 use super::steps::{self, StepTable};
 use super::types::{ArraySpec, Kind, Part, Values};
@@ -136,6 +136,7 @@ impl Layout {
     pub(super) fn write_mesh(
         &self,
         file: &File,
+        writer: &RowWriter,
         part: &Part,
         cell_arrays: &[(ArraySpec, Values)],
     ) -> Result<(), String> {
@@ -146,34 +147,34 @@ impl Layout {
         let points: Vec<f64> = part.points.iter().flatten().copied().collect();
         let types = vec![part.cell_type as u8; part.cells()];
         let mut results = vec![
-            write_rows(
+            writer.write(
                 &open("NumberOfPoints")?,
                 self.rank,
                 &[part.points.len() as i64],
             ),
-            write_rows(&open("NumberOfCells")?, self.rank, &[part.cells() as i64]),
-            write_rows(
+            writer.write(&open("NumberOfCells")?, self.rank, &[part.cells() as i64]),
+            writer.write(
                 &open("NumberOfConnectivityIds")?,
                 self.rank,
                 &[part.connectivity.len() as i64],
             ),
-            write_rows(&open("Points")?, self.first_point, &points),
-            write_rows(
+            writer.write(&open("Points")?, self.first_point, &points),
+            writer.write(
                 &open("Connectivity")?,
                 self.first_connectivity,
                 &part.connectivity,
             ),
             // Each part has one offset more than cells.
-            write_rows(
+            writer.write(
                 &open("Offsets")?,
                 self.first_cell + self.rank,
                 &part.offsets,
             ),
-            write_rows(&open("Types")?, self.first_cell, &types),
+            writer.write(&open("Types")?, self.first_cell, &types),
         ];
         for (spec, values) in cell_arrays {
             let dataset = open(&format!("CellData/{}", spec.name))?;
-            results.push(write_values(&dataset, self.first_cell, values));
+            results.push(write_values(writer, &dataset, self.first_cell, values));
         }
         results.into_iter().collect()
     }

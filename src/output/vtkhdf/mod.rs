@@ -2,14 +2,15 @@
 //!
 //! In: states of nodes and contact points. Out: `fields.vtkhdf`, `tools.vtkhdf` and `contact.vtkhdf`. Never: mechanics.
 //!
-//! Written by all ranks together through MPI-IO, one partition per rank; ParaView (5.12 or newer) and VTK's
+//! Written by all ranks together through MPI-IO, one partition per rank, and by one rank alone without it; ParaView (5.12 or newer) and VTK's
 //! `vtkHDFReader` open it. The mesh and the cell arrays are stored once and every step points at them; only the
 //! point arrays grow.
 //!
 //! What holds when a run is killed: a step is written in two flushes, first its data, then the number of steps, so
 //! the file on disk between two steps is complete and consistent, and a kill there loses nothing. HDF5 keeps no
 //! journal: a kill inside a flush (milliseconds per step) can in unlucky cases leave the file unreadable. The history
-//! table does not depend on it.
+//! table does not depend on it. That is about the process: a machine that loses its power loses what the system has not
+//! brought to the disk yet, and has the last checkpoint, which is there for certain.
 
 mod collective;
 mod datasets;

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use hdf5::{Attribute, Dataset, File};
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::{AsRaw, Communicator};
+use mpi::traits::Communicator;
 
+use super::collective::RowWriter;
 use super::datasets::{extend, write_values};
 use super::earlier::{Column, EarlierSteps};
 use super::layout::Layout;
@@ -26,6 +27,7 @@ pub(super) struct TimeSeries {
     total_points: usize,
     table: StepTable,
     count: Attribute,
+    writer: RowWriter,
     // Last, so that everything in the file is released before the file itself.
     file: File,
 }
@@ -62,10 +64,8 @@ impl TimeSeries {
             _ => Ok(()),
         };
         agree(&comm, begun)?;
-        let opened = File::with_options()
-            .with_fapl(|access| access.mpio(comm.as_raw(), None))
-            .open_rw(path);
-        let file = agree(
+        let opened = RowWriter::open(path, &comm);
+        let (file, writer) = agree(
             &comm,
             opened.map_err(|error| OutputError::hdf5(path, "opening it on all ranks", error)),
         )?;
@@ -74,7 +74,9 @@ impl TimeSeries {
             .define(&file, point_arrays, cell_arrays)
             .map_err(|error| failed(error.to_string()));
         let (point_datasets, table, count) = agree(&comm, made)?;
-        let written = layout.write_mesh(&file, part, cell_arrays).map_err(failed);
+        let written = layout
+            .write_mesh(&file, &writer, part, cell_arrays)
+            .map_err(failed);
         agree(
             &comm,
             written.and(file.flush().map_err(|error| failed(error.to_string()))),
@@ -89,13 +91,14 @@ impl TimeSeries {
             total_points: layout.total_points,
             table,
             count,
+            writer,
             file,
             comm,
         })
     }
 
     /// Adds one step at `t_ms` with the values of all point arrays, in the order of their specifications. When it
-    /// returns, the step is on disk. Collective; all ranks return the same result.
+    /// returns, the step is in the file. Collective; all ranks return the same result.
     ///
     /// # Errors
     /// [`OutputError::Mismatch`] if the values do not fit, [`OutputError::NoSpace`] if the disk is full: then nothing has
@@ -172,12 +175,20 @@ impl TimeSeries {
         };
         for (dataset, values) in self.point_arrays.iter().zip(values) {
             keep(extend(dataset, first_row + self.total_points));
-            keep(write_values(dataset, first_row + self.first_point, values));
+            keep(write_values(
+                &self.writer,
+                dataset,
+                first_row + self.first_point,
+                values,
+            ));
         }
-        keep(
-            self.table
-                .append(self.steps, t_ms, first_row as i64, self.comm.rank() == 0),
-        );
+        keep(self.table.append(
+            &self.writer,
+            self.steps,
+            t_ms,
+            first_row as i64,
+            self.comm.rank() == 0,
+        ));
         keep(self.file.flush().map_err(|error| error.to_string()));
         keep(
             self.count

@@ -2,7 +2,7 @@
 
 use hdf5::{Attribute, Dataset, Group, H5Type};
 
-use super::collective::write_rows;
+use super::collective::RowWriter;
 use super::datasets::{extend, extendable};
 use super::types::ArraySpec;
 use crate::output::space::BESIDE_VALUES;
@@ -77,14 +77,15 @@ impl StepTable {
     /// rank 0 writes. Every rank makes all calls, the first failure is returned.
     pub(super) fn append(
         &self,
+        writer: &RowWriter,
         step: usize,
         t_ms: f64,
         first_row: i64,
         writes: bool,
     ) -> Result<(), String> {
-        let mut results = vec![append_one(&self.times, step, t_ms, writes)];
+        let mut results = vec![append_one(writer, &self.times, step, t_ms, writes)];
         let offsets = self.point_offsets.iter();
-        results.extend(offsets.map(|offsets| append_one(offsets, step, first_row, writes)));
+        results.extend(offsets.map(|offsets| append_one(writer, offsets, step, first_row, writes)));
         results.extend(
             self.constants
                 .iter()
@@ -95,13 +96,14 @@ impl StepTable {
 }
 
 fn append_one<T: H5Type>(
+    writer: &RowWriter,
     dataset: &Dataset,
     step: usize,
     value: T,
     writes: bool,
 ) -> Result<(), String> {
     let extended = extend(dataset, step + 1);
-    let written = write_rows(
+    let written = writer.write(
         dataset,
         step,
         if writes {

@@ -136,7 +136,7 @@ impl Recorder {
             let arrays = Arrays::create(&to.join(STATE))?;
             state.put(&arrays)?;
             arrays.close()?;
-            // Every writer has brought its file to the disk after the last step.
+            // Every writer has put the last step into its file.
             for name in [HISTORY, FIELDS, TOOLS, CONTACT] {
                 let path = to.join(name);
                 std::fs::copy(self.folder.file(name), &path)
