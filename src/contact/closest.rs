@@ -118,6 +118,8 @@ pub(super) fn closest(nodes: &[Vector; 3], tool: &Profile, shift: Vector, length
             break;
         }
     }
+    let mut distance = here.distance;
+    distance.value = here.value;
     let held = (xi <= -1.0 && here.slope >= 0.0) || (xi >= 1.0 && here.slope <= 0.0);
     let shape = edge_shape(xi);
     let shape_slope = edge_shape_slopes(xi);
@@ -135,10 +137,7 @@ pub(super) fn closest(nodes: &[Vector; 3], tool: &Profile, shift: Vector, length
     Closest {
         xi,
         x: here.x,
-        distance: Distance {
-            value: here.value,
-            ..here.distance
-        },
+        distance,
         drift,
     }
 }

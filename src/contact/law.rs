@@ -56,7 +56,7 @@ pub struct PointPosition {
     /// How a moving point moves with the nodes; none at a fixed point or one held at an end.
     pub drift: Option<Drift>,
     /// What slid: arc length now less that of the same point of the sheet at the last accepted step,
-    /// both in the tool's frame, mm.
+    /// both in the tool's frame, mm; zero without friction.
     pub slip: f64,
     /// Derivative of the slip by the place on the edge, mm; for moving points.
     pub slip_slope: f64,
@@ -110,7 +110,10 @@ impl ContactLaw {
         let distance = tool.distance([x[0] - shift[0], x[1] - shift[1]]);
         PointPosition {
             x,
-            slip: distance.arc_length - state.arc_length,
+            slip: match self.friction {
+                Some(_) => distance.arc_length() - state.arc_length,
+                None => 0.0,
+            },
             distance,
             shape: self.shape,
             drift: None,
@@ -130,7 +133,7 @@ impl ContactLaw {
         let (mut slip, mut slip_slope) = (0.0, 0.0);
         if self.friction.is_some() {
             let before = tool.distance(interpolate(edge_shape(found.xi), &state.nodes));
-            slip = found.distance.arc_length - before.arc_length;
+            slip = found.distance.arc_length() - before.arc_length();
             if let Some(drift) = found.drift {
                 let x_slope_before = interpolate(drift.shape_slope, &state.nodes);
                 slip_slope = dot(found.distance.arc_gradient, drift.x_slope)
@@ -291,7 +294,7 @@ mod tests {
         let slip_before = slip.unwrap_or(0.0);
         state = FrictionState {
             traction: 1e-5,
-            arc_length: distance.arc_length - slip_before,
+            arc_length: distance.arc_length() - slip_before,
             nodes: nodes.map(|[x, y]| {
                 let along = distance.arc_gradient.map(|g| slip_before * g);
                 [x - along[0] + 0.01 * (x - 26.4), y - along[1]]

@@ -55,7 +55,7 @@ impl System {
             let near: Vec<f64> = contacts
                 .map(|contact| self.distance(contact, state.t, &values))
                 .filter(|distance| distance.value < NEAR)
-                .flat_map(|distance| [distance.arc_length, distance.value])
+                .flat_map(|distance| [distance.arc_length(), distance.value])
                 .collect();
             let all = ranks::gather_lists(&self.comm, &near);
             let point = |pair: &[f64]| NearPoint {
@@ -91,7 +91,7 @@ impl System {
                 continue;
             }
             let distance = self.distance(contact, t, &values);
-            let expected = now.expected(distance.arc_length, before, ratio);
+            let expected = now.expected(distance.arc_length(), before, ratio);
             (guess[gap - 1], guess[gap]) = match expected {
                 Some(expected) if expected < 0.0 => (-expected / contact.law.compliance, 0.0),
                 _ => (0.0, distance.value.max(0.0)),
@@ -114,7 +114,7 @@ impl System {
         let mut mine = f64::INFINITY;
         for contact in &self.local.contacts {
             let there = self.distance(contact, to.t, &end);
-            if there.value > -TOUCHDOWN || now.of(contact.side).reaches(there.arc_length) {
+            if there.value > -TOUCHDOWN || now.of(contact.side).reaches(there.arc_length()) {
                 continue;
             }
             let here = self.distance(contact, from.t, &start).value;

@@ -28,7 +28,7 @@ impl History {
             let x = contact.reference(&nodes);
             FrictionState {
                 traction: 0.0,
-                arc_length: contact.tool.profile.distance(x).arc_length,
+                arc_length: contact.tool.profile.distance(x).arc_length(),
                 nodes,
             }
         });
@@ -84,7 +84,7 @@ impl History {
             let shift = contact.tool.motion.shift(t);
             *state = FrictionState {
                 traction,
-                arc_length: position.distance.arc_length,
+                arc_length: position.distance.arc_length(),
                 nodes: nodes.map(|x| [x[0] - shift[0], x[1] - shift[1]]),
             };
         }

@@ -8,7 +8,7 @@ use super::measure_sums::{Maxima, Sums};
 use super::subdomain::Subdomain;
 use crate::element::edge_shape;
 use crate::mesh::SurfaceSide;
-use crate::plane::interpolate;
+use crate::plane::{Vector, interpolate};
 use crate::tool::Distance;
 
 /// The arm's fit uses the outer sixth of the half sheet: beyond the die's shoulder it is free of
@@ -16,6 +16,9 @@ use crate::tool::Distance;
 pub(super) const ARM_START: f64 = 5.0 / 6.0;
 /// Penetration is looked for at this many equal steps along each edge: between contact points, too.
 const PENETRATION_PROBES: usize = 48;
+/// No place on a quadratic edge is farther from a point than this many times the farthest of its nodes: the largest sum of
+/// the magnitudes of its shape functions. A distance changes by no more than the way.
+const REACH: f64 = 1.25;
 
 /// Measures of the whole sheet (both halves, full width) at one state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,7 +111,8 @@ impl Subdomain {
             let m = self.multiplier(point);
             let (force, gap) = (young * u[m], u[m + 1]);
             let nodes = self.edge_positions(contact, u);
-            let distance = contact.position(&nodes, t, committed).distance;
+            let position = contact.position(&nodes, t, committed);
+            let distance = position.distance;
             // The history is that of `u`, so its friction is the present one.
             let friction = young * committed.traction;
             let upward = upward(force, friction, &distance);
@@ -121,11 +125,11 @@ impl Subdomain {
                 sums.active_points += 1.0;
             }
             let mut penetration = -distance.value;
-            if contact.first_of_edge {
+            if contact.first_of_edge && distance.value < REACH * spread(position.x, &nodes) {
                 for k in 0..=PENETRATION_PROBES {
                     let shape = edge_shape(2.0 * k as f64 / PENETRATION_PROBES as f64 - 1.0);
                     let x = interpolate(shape, &nodes);
-                    penetration = penetration.max(-contact.tool.distance(x, t).value);
+                    penetration = penetration.max(-contact.tool.signed_distance(x, t));
                 }
             }
             let friction_excess = contact.law.friction.map_or(f64::NEG_INFINITY, |law| {
@@ -191,7 +195,7 @@ impl Subdomain {
             if node == mesh.point_a {
                 sums.point_a_displacement += u[2 * local + 1];
                 if let Some(tool) = &self.problem.upper_tool {
-                    sums.point_a_gap += tool.distance(now, t).value;
+                    sums.point_a_gap += tool.signed_distance(now, t);
                 }
             }
             if before[0] >= ARM_START * half_length {
@@ -200,6 +204,12 @@ impl Subdomain {
             }
         }
     }
+}
+
+/// How far the farthest of an edge's nodes is from a point, mm.
+fn spread(from: Vector, nodes: &[Vector; 3]) -> f64 {
+    let away = nodes.map(|x| (x[0] - from[0]).hypot(x[1] - from[1]));
+    away.into_iter().fold(0.0, f64::max)
 }
 
 /// Vertical part of a contact point's normal and friction force on the sheet, N per mm of width.

@@ -215,8 +215,11 @@ impl Subdomain {
             let m = self.multiplier(point);
             let force = self.problem.young_modulus * u[m];
             let state = contact.law.committed_state(u[m], u[m + 1], committed);
-            let position = self.contact_position(contact, committed, t, u);
-            let shares = half_edge_hats(&position.shape);
+            let shape = match contact.law.moves_on {
+                Some(_) => self.contact_position(contact, committed, t, u).shape,
+                None => contact.law.shape,
+            };
+            let shares = half_edge_hats(&shape);
             for (&node, share) in contact.nodes.iter().zip(shares) {
                 sums[node].add_point(share, force, contact.length, state);
             }
@@ -230,7 +233,7 @@ impl Subdomain {
         let now = [x + u[2 * node], y + u[2 * node + 1]];
         let gap = |side: SurfaceSide| {
             let tool = self.problem.tool(side);
-            tool.map_or(f64::MAX, |tool| tool.distance(now, t).value)
+            tool.map_or(f64::MAX, |tool| tool.signed_distance(now, t))
         };
         match face {
             Some(side) => gap(side),

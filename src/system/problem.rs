@@ -74,6 +74,13 @@ impl Tool {
         let shift = self.motion.shift(t);
         self.profile.distance([x[0] - shift[0], x[1] - shift[1]])
     }
+
+    /// The same without what belongs to it, mm.
+    pub fn signed_distance(&self, x: [f64; 2], t: f64) -> f64 {
+        let shift = self.motion.shift(t);
+        self.profile
+            .signed_distance([x[0] - shift[0], x[1] - shift[1]])
+    }
 }
 
 impl Factor {

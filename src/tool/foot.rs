@@ -1,8 +1,8 @@
 //! Where on a piece a point has its foot point: a piece made ready for being asked often.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
-use super::distance::{CENTRE_RADIUS, Distance, tangential_projector};
+use super::distance::{Along, CENTRE_RADIUS, Distance, tangential_projector};
 use super::piece::Piece;
 use crate::plane::{SymmetricMatrix, Vector, dot};
 
@@ -103,6 +103,26 @@ impl Foot {
         }
     }
 
+    /// Signed distance of a point whose foot point lies within the piece, mm: the value of [`Foot::distance`].
+    #[inline]
+    pub fn signed_distance(&self, x: Vector) -> f64 {
+        match *self {
+            Self::OnLine { start, tangent, .. } => {
+                cross(tangent, [x[0] - start[0], x[1] - start[1]])
+            }
+            Self::OnCircle {
+                centre,
+                radius,
+                turn,
+                ..
+            } => {
+                let from_centre = [x[0] - centre[0], x[1] - centre[1]];
+                let r = dot(from_centre, from_centre).sqrt().max(CENTRE_RADIUS);
+                -turn * beyond_circle(x, centre, radius, r)
+            }
+        }
+    }
+
     /// Distance of a point whose foot point lies within the piece; arc length from the start of the piece.
     #[inline]
     pub fn distance(&self, x: Vector) -> Distance {
@@ -113,9 +133,10 @@ impl Foot {
                     value: cross(tangent, from_start),
                     gradient: [-tangent[1], tangent[0]],
                     hessian: SymmetricMatrix::default(),
-                    arc_length: dot(from_start, tangent),
                     arc_gradient: tangent,
                     arc_hessian: SymmetricMatrix::default(),
+                    piece_start: 0.0,
+                    along: Along::Known(dot(from_start, tangent)),
                 }
             }
             Self::OnCircle {
@@ -134,12 +155,6 @@ impl Foot {
                 } else {
                     ([from_centre[0] / r, from_centre[1] / r], r)
                 };
-                let walked = (turn * cross(first, radial)).atan2(dot(first, radial));
-                // A little before the first point is rounding; on an arc of more than half a turn it can be its far part.
-                let angle = match walked < 0.0 && span > PI {
-                    true => (walked + TAU).min(span),
-                    false => walked.clamp(0.0, span),
-                };
                 let tangent = [-turn * radial[1], turn * radial[0]];
                 let stretch = radius / r;
                 // Second derivative of the angle: -(e_r e_t + e_t e_r) / r^2.
@@ -148,12 +163,18 @@ impl Foot {
                     value: -turn * beyond_circle(x, centre, radius, r),
                     gradient: [-turn * radial[0], -turn * radial[1]],
                     hessian: tangential_projector(radial, -turn / r),
-                    arc_length: radius * angle,
                     arc_gradient: [stretch * tangent[0], stretch * tangent[1]],
                     arc_hessian: SymmetricMatrix {
                         xx: 2.0 * mixed * radial[0] * tangent[0],
                         yy: 2.0 * mixed * radial[1] * tangent[1],
                         xy: mixed * (radial[0] * tangent[1] + radial[1] * tangent[0]),
+                    },
+                    piece_start: 0.0,
+                    along: Along::OnArc {
+                        radius,
+                        sin: turn * cross(first, radial),
+                        cos: dot(first, radial),
+                        span,
                     },
                 }
             }
@@ -244,7 +265,7 @@ mod tests {
                         let distance = arc.distance(x);
                         assert!((value - (r - 1000.0)).abs() < 1e-11);
                         assert!((distance.value - value).abs() < 1e-11);
-                        assert!((distance.arc_length - 1000.0 * (half + aside)).abs() < 1e-9);
+                        assert!((distance.arc_length() - 1000.0 * (half + aside)).abs() < 1e-9);
                     }
                 }
             }

@@ -275,9 +275,9 @@ mod tests {
             // No jump: every piece begins where the one before ends, and roundings without a kink.
             if let Some((y, s)) = before {
                 let step = (x[0] - y[0]).hypot(x[1] - y[1]);
-                assert!((distance.arc_length - s - step).abs() < 1e-4, "{x:?}");
+                assert!((distance.arc_length() - s - step).abs() < 1e-4, "{x:?}");
             }
-            before = Some((x, distance.arc_length));
+            before = Some((x, distance.arc_length()));
         }
         // The bottom of the rounding: the corner is r (√2 - 1) below it.
         let bottom = -9.0 + 2.0 * (2.0_f64.sqrt() - 1.0);

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::distance::{CENTRE_RADIUS, Distance, tangential_projector};
+use super::distance::{Along, CENTRE_RADIUS, Distance, tangential_projector};
 use super::foot::Foot;
 use crate::plane::{SymmetricMatrix, Vector, dot};
 
@@ -200,9 +200,10 @@ impl End {
             value,
             gradient: radial,
             hessian: tangential_projector(radial, side / r),
-            arc_length: self.arc_length,
             arc_gradient: [0.0; 2],
             arc_hessian: SymmetricMatrix::default(),
+            piece_start: 0.0,
+            along: Along::Known(self.arc_length),
         }
     }
 }

@@ -115,8 +115,27 @@ impl Profile {
         }
     }
 
-    /// Signed distance of `x` (mm) to the closest piece.
+    /// Signed distance of `x` (mm) to the closest piece, with what belongs to it.
     pub fn distance(&self, x: Vector) -> Distance {
+        let (piece, end) = self.nearest(x);
+        let mut distance = match end {
+            None => self.feet[piece].distance(x),
+            Some(end) => self.ends[piece][end].distance(x),
+        };
+        distance.piece_start = self.arc_starts[piece];
+        distance
+    }
+
+    /// Signed distance of `x` (mm) alone, mm.
+    pub fn signed_distance(&self, x: Vector) -> f64 {
+        match self.nearest(x) {
+            (piece, None) => self.feet[piece].signed_distance(x),
+            (piece, Some(end)) => self.ends[piece][end].value(x),
+        }
+    }
+
+    /// The piece that is closest to `x` (mm), and which of its ends if that is its closest point.
+    fn nearest(&self, x: Vector) -> (usize, Option<usize>) {
         let last = self.feet.len() - 1;
         let (mut best, mut nearest) = (f64::INFINITY, (0, None));
         let mut consider = |value: f64, place| {
@@ -136,13 +155,7 @@ impl Profile {
                 }
             }
         }
-        let (piece, end) = nearest;
-        let mut distance = match end {
-            None => self.feet[piece].distance(x),
-            Some(end) => self.ends[piece][end].distance(x),
-        };
-        distance.arc_length += self.arc_starts[piece];
-        distance
+        nearest
     }
 
     /// The profile as a polyline with at most `spacing` (mm) between points, for pictures. The middle
@@ -217,8 +230,8 @@ mod tests {
                 let [right, left, up, down] = [[h, 0.0], [-h, 0.0], [0.0, h], [0.0, -h]]
                     .map(|s| profile.distance([x[0] + s[0], x[1] + s[1]]));
                 // On the medial axis the closest piece changes and no derivative exists.
-                if (right.arc_length - left.arc_length).abs() > 1e-3
-                    || (up.arc_length - down.arc_length).abs() > 1e-3
+                if (right.arc_length() - left.arc_length()).abs() > 1e-3
+                    || (up.arc_length() - down.arc_length()).abs() > 1e-3
                 {
                     continue;
                 }
@@ -248,12 +261,12 @@ mod tests {
                 );
                 close(
                     d.arc_gradient[0],
-                    slope(right.arc_length, left.arc_length),
+                    slope(right.arc_length(), left.arc_length()),
                     "arc x",
                 );
                 close(
                     d.arc_gradient[1],
-                    slope(up.arc_length, down.arc_length),
+                    slope(up.arc_length(), down.arc_length()),
                     "arc y",
                 );
                 let [pr, pl, pu, pd] = [right, left, up, down].map(|d| d.arc_gradient);
@@ -291,9 +304,9 @@ mod tests {
                 assert!(d.value.abs() < 1e-12);
                 if let Some((y, s)) = before {
                     length += (x[0] - y[0]).hypot(x[1] - y[1]);
-                    assert!(d.arc_length >= s);
+                    assert!(d.arc_length() >= s);
                 }
-                before = Some((x, d.arc_length));
+                before = Some((x, d.arc_length()));
             }
             assert!(before.is_some_and(|(_, s)| (s - length).abs() < 1e-4));
         }

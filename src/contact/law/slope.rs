@@ -203,7 +203,7 @@ mod tests {
         let start = [[26.25, -1.1], [26.65, -0.77], [26.45, -0.931]];
         let at_rest = die(25.0, 4.0, 60.0)
             .distance(interpolate(edge_shape(0.3), &start))
-            .arc_length;
+            .arc_length();
         let (back, friction) = slip.map_or((0.0, None), |(slip, friction)| (slip, Some(friction)));
         Beside {
             tool: die(25.0 + by, 4.0 + 0.5 * by, 60.0),
@@ -290,7 +290,7 @@ mod tests {
         }
         close(exact.closure, more.2.closure, less.2.closure, "closure");
         close(exact.state.traction, more.1.value, less.1.value, "traction");
-        let [a, b] = [&more, &less].map(|of| of.0.distance.arc_length);
+        let [a, b] = [&more, &less].map(|of| of.0.distance.arc_length());
         close(exact.state.arc_length, a, b, "arc length");
     }
 }

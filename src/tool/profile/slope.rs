@@ -116,10 +116,10 @@ impl Profile {
     pub fn distance_slope(&self, at: &Distance, by: &ProfileSlope) -> DistanceSlope {
         let index = self
             .arc_starts
-            .partition_point(|start| *start <= at.arc_length);
+            .partition_point(|start| *start <= at.arc_length());
         let index = index.saturating_sub(1);
         let (piece, moves) = (&self.pieces[index], &by.pieces[index]);
-        let along = at.arc_length - self.arc_starts[index];
+        let along = at.arc_length() - self.arc_starts[index];
         // Only the foot point at an end stays where it is when the point moves.
         if at.arc_gradient == [0.0; 2] {
             let end = usize::from(along > 0.5 * piece.length());
@@ -200,7 +200,7 @@ mod tests {
                     let x = [0.13 + 0.97 * f64::from(i), -28.3 + 0.83 * f64::from(j)];
                     let [at, more, less] = [&here, &above, &below].map(|tool| tool.distance(x));
                     // Where the closest piece changes there is no derivative.
-                    if (more.arc_length - less.arc_length).abs() > 1e-2 {
+                    if (more.arc_length() - less.arc_length()).abs() > 1e-2 {
                         continue;
                     }
                     compared += 1;
@@ -216,8 +216,8 @@ mod tests {
                     close(exact.value, more.value, less.value, "value");
                     close(
                         exact.arc_length,
-                        more.arc_length,
-                        less.arc_length,
+                        more.arc_length(),
+                        less.arc_length(),
                         "arc length",
                     );
                     for k in 0..2 {
