@@ -46,6 +46,12 @@ fn force(
     out
 }
 
+/// Entry of the whole tangent, of which the blocks below the diagonal are not stored.
+fn entry(of: &ElementForce, i: usize, j: usize) -> f64 {
+    let (first, second) = if i / 2 <= j / 2 { (i, j) } else { (j, i) };
+    of.stiffness[first / 2][second / 2][first % 2][second % 2]
+}
+
 /// States after a first plastic step, so that the second one starts from history.
 fn deformed_states(kernel: &Quad8, u: &[[f64; 2]; 8], material: &VonMises) -> Vec<PointState> {
     (0..kernel.point_count())
@@ -86,8 +92,10 @@ fn the_element_tangent_agrees_with_central_differences() {
             );
             let scale = exact
                 .stiffness
+                .as_flattened()
+                .as_flattened()
+                .as_flattened()
                 .iter()
-                .flatten()
                 .fold(0.0_f64, |m, k| m.max(k.abs()));
             let h = 1e-7;
             for j in 0..16 {
@@ -98,12 +106,12 @@ fn the_element_tangent_agrees_with_central_differences() {
                 let down = force(&kernel, &minus, &material, &states);
                 for i in 0..16 {
                     let slope = (up.force[i] - down.force[i]) / (2.0 * h);
-                    let error = (exact.stiffness[i][j] - slope).abs() / scale;
+                    let error = (entry(&exact, i, j) - slope).abs() / scale;
                     assert!(
                         error < 2e-7,
                         "{quadrature:?} {size} [{i}][{j}]: {error:.1e}"
                     );
-                    let skew = (exact.stiffness[i][j] - exact.stiffness[j][i]).abs() / scale;
+                    let skew = (entry(&exact, i, j) - entry(&exact, j, i)).abs() / scale;
                     assert!(skew < 1e-14);
                 }
             }

@@ -26,9 +26,13 @@ pub struct Quad8 {
 pub struct ElementForce {
     /// Internal force, N per mm of width.
     pub force: [f64; DOFS],
-    /// Tangent stiffness, N/mm per mm of width; left alone if it was not asked for.
-    pub stiffness: [[f64; DOFS]; DOFS],
+    /// Tangent stiffness between nodes a <= b, at [a][b], N/mm per mm of width; left alone if it was not asked for. That
+    /// between b and a is its transpose.
+    pub stiffness: [[NodeBlock; 8]; 8],
 }
+
+/// Entries between two nodes: rows x and y of the first, columns x and y of the second.
+pub type NodeBlock = [[f64; 2]; 2];
 
 /// A Gauss point whose return map failed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -103,7 +107,7 @@ impl Quad8 {
     ) -> Result<(), GaussPointFailure> {
         out.force = [0.0; DOFS];
         if with_stiffness {
-            out.stiffness = [[0.0; DOFS]; DOFS];
+            out.stiffness = ElementForce::ZERO.stiffness;
         }
         for (point, state) in states.iter().enumerate() {
             let (response, f, volume) = self.point_response(point, u, material, state)?;
@@ -130,9 +134,6 @@ impl Quad8 {
                 );
             }
         }
-        if with_stiffness {
-            mirror_upper(&mut out.stiffness);
-        }
         Ok(())
     }
 }
@@ -141,17 +142,17 @@ impl ElementForce {
     /// All zeros.
     pub const ZERO: Self = Self {
         force: [0.0; DOFS],
-        stiffness: [[0.0; DOFS]; DOFS],
+        stiffness: [[[[0.0; 2]; 2]; 8]; 8],
     };
 }
 
-/// Adds material and geometric stiffness of one Gauss point to the upper block triangle.
+/// Adds material and geometric stiffness of one Gauss point.
 fn add_stiffness(
     gradients: &[Vector; 8],
     tangent: &[[f64; 3]; 3],
     volume: f64,
     traction: &[Vector; 8],
-    stiffness: &mut [[f64; DOFS]; DOFS],
+    stiffness: &mut [[NodeBlock; 8]; 8],
 ) {
     for b in 0..8 {
         let [bx, by] = gradients[b];
@@ -165,22 +166,13 @@ fn add_stiffness(
         for a in 0..=b {
             let [ax, ay] = gradients[a];
             let geometric = traction[a][0] * bx + traction[a][1] * by;
+            let [x, y] = &mut stiffness[a][b];
             for j in 0..2 {
-                stiffness[2 * a][2 * b + j] += ax * rate[0][j] + ay * rate[2][j];
-                stiffness[2 * a + 1][2 * b + j] += ay * rate[1][j] + ax * rate[2][j];
+                x[j] += ax * rate[0][j] + ay * rate[2][j];
+                y[j] += ay * rate[1][j] + ax * rate[2][j];
             }
-            stiffness[2 * a][2 * b] += geometric;
-            stiffness[2 * a + 1][2 * b + 1] += geometric;
-        }
-    }
-}
-
-/// Copies the upper block triangle to the lower one.
-fn mirror_upper(stiffness: &mut [[f64; DOFS]; DOFS]) {
-    for i in 1..DOFS {
-        let (above, below) = stiffness.split_at_mut(i);
-        for (mirrored, row) in below[0].iter_mut().zip(above) {
-            *mirrored = row[i];
+            x[0] += geometric;
+            y[1] += geometric;
         }
     }
 }

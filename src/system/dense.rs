@@ -55,6 +55,11 @@ impl PartialFactors {
         }
     }
 
+    /// Whether the matrix is symmetric.
+    pub(super) fn kind(&self) -> FactorKind {
+        self.kind
+    }
+
     /// The number of unknowns to be eliminated.
     pub(super) fn eliminated(&self) -> usize {
         self.eliminated

@@ -1,7 +1,5 @@
 //! One slice of the sheet as a small dense matrix: filled, some unknowns eliminated, what is left handed on.
 
-use std::array;
-
 use petsc::FactorKind;
 
 use super::condensation::{CondensedEntries, CondensedPattern};
@@ -13,23 +11,30 @@ pub(super) struct Front {
     unknowns: Vec<usize>,
     factors: PartialFactors,
     /// Where entries of elements are added, and those of contact points and supports.
-    elements: Places<16>,
-    others: Places<6>,
+    elements: Places<8>,
+    others: Places<3>,
     /// Where what the slice before left is in the matrix.
     before: Vec<Run>,
 }
 
-/// Where entries are added: those between N unknowns together, as their places in the front are all that it takes, and
+/// Where entries are added: those between N nodes together, as the places of these in the front are all that it takes, and
 /// where some are left out or alone one by one.
 struct Places<const N: usize> {
     blocks: Vec<Block<N>>,
     entries: Vec<[u32; 2]>,
 }
 
-/// The number of its first entry, and the places of its unknowns.
+/// The number of its first entry, and its nodes in the order of the front.
 struct Block<const N: usize> {
     first: usize,
-    unknowns: [u32; N],
+    nodes: [PlacedNode; N],
+}
+
+/// Which node of its block, and the place of its first unknown, which the second follows.
+#[derive(Clone, Copy)]
+struct PlacedNode {
+    number: u32,
+    place: u32,
 }
 
 /// Unknowns that follow each other in what was left and in the front.
@@ -133,8 +138,9 @@ impl Front {
         let matrix = &mut matrix[..self.room()];
         matrix.fill(0.0);
         self.add_before(left, matrix);
-        self.elements.add(entries.elements, matrix, self.stride());
-        self.others.add(entries.others, matrix, self.stride());
+        let (kind, stride) = (self.factors.kind(), self.stride());
+        self.elements.add(entries.elements, matrix, stride, kind);
+        self.others.add(entries.others, matrix, stride, kind);
         let usable = self.factors.factor(matrix);
         let (inside, outer) = (self.factors.eliminated(), self.outer().len());
         let rows = matrix.chunks_exact(self.stride().max(1)).skip(inside);
@@ -183,46 +189,78 @@ impl Front {
 
 impl<const N: usize> Places<N> {
     /// For numbers of entries, ascending, with row and column in the front; the numbers are counted from `first` on, and
-    /// N x N that follow each other from a multiple of it are those between N unknowns, row by row.
+    /// 2N x 2N that follow each other from a multiple of it are those between N nodes, row by row.
     fn new(entries: &[(usize, usize, usize)], first: usize, stride: usize) -> Self {
         let mut places = Self::default();
-        let blocks = entries.chunk_by(|a, b| (a.0 - first) / (N * N) == (b.0 - first) / (N * N));
-        for block in blocks {
-            let number = block[0].0 - first;
-            let unknowns: [u32; N] = array::from_fn(|i| block.get(i).map_or(0, |e| e.2 as u32));
-            let whole = block.len() == N * N
-                && block.iter().enumerate().all(|(at, &(_, row, column))| {
-                    [row as u32, column as u32] == [unknowns[at / N], unknowns[at % N]]
-                });
-            if whole {
-                places.blocks.push(Block {
-                    first: number,
-                    unknowns,
-                });
-            } else {
-                let single = block.iter().map(|&(number, row, column)| {
-                    [(number - first) as u32, (row * stride + column) as u32]
-                });
-                places.entries.extend(single);
+        let size = 4 * N * N;
+        for block in entries.chunk_by(|a, b| (a.0 - first) / size == (b.0 - first) / size) {
+            match Block::new(block, first) {
+                Some(block) => places.blocks.push(block),
+                None => places
+                    .entries
+                    .extend(block.iter().map(|&(number, row, column)| {
+                        [(number - first) as u32, (row * stride + column) as u32]
+                    })),
             }
         }
         places
     }
 
-    /// Adds entries to a matrix. Of a symmetric one the lower triangle is filled, too, though nobody reads it.
-    fn add(&self, entries: &[f64], matrix: &mut [f64], stride: usize) {
-        for Block { first, unknowns } in &self.blocks {
-            let rows = entries[*first..].chunks_exact(N);
-            for (&row, values) in unknowns.iter().zip(rows) {
-                let sums = &mut matrix[row as usize * stride..][..stride];
-                for (&column, value) in unknowns.iter().zip(values) {
-                    sums[column as usize] += value;
+    /// Adds entries to a matrix. Of a symmetric one only the upper triangle counts, and below it only what is in a node's own
+    /// block is filled.
+    fn add(&self, entries: &[f64], matrix: &mut [f64], stride: usize, kind: FactorKind) {
+        for Block { first, nodes } in &self.blocks {
+            let entries = &entries[*first..][..4 * N * N];
+            for (i, row) in nodes.iter().enumerate() {
+                let after = match kind {
+                    FactorKind::Symmetric => &nodes[i..],
+                    FactorKind::General => &nodes[..],
+                };
+                let values = &entries[4 * N * row.number as usize..][..4 * N];
+                let sums = &mut matrix[row.place as usize * stride..][..2 * stride];
+                let (x, y) = sums.split_at_mut(stride);
+                let (of_x, of_y) = values.split_at(2 * N);
+                for column in after {
+                    let (to, from) = (column.place as usize, 2 * column.number as usize);
+                    let [x, y] = [&mut x[to..to + 2], &mut y[to..to + 2]];
+                    let [of_x, of_y] = [&of_x[from..from + 2], &of_y[from..from + 2]];
+                    x[0] += of_x[0];
+                    x[1] += of_x[1];
+                    y[0] += of_y[0];
+                    y[1] += of_y[1];
                 }
             }
         }
         for &[number, place] in &self.entries {
             matrix[place as usize] += entries[number as usize];
         }
+    }
+}
+
+impl<const N: usize> Block<N> {
+    /// Of some of its entries, if all are there and the two unknowns of each node follow each other.
+    fn new(entries: &[(usize, usize, usize)], first: usize) -> Option<Self> {
+        let column = |i: usize| entries.get(i).map(|entry| entry.2);
+        let mut nodes = [PlacedNode {
+            number: 0,
+            place: 0,
+        }; N];
+        for (node, number) in nodes.iter_mut().zip(0..) {
+            *node = PlacedNode {
+                number,
+                place: column(2 * number as usize)? as u32,
+            };
+        }
+        let place = |i: usize| nodes[i / 2].place as usize + i % 2;
+        let whole = entries.len() == 4 * N * N
+            && entries.iter().enumerate().all(|(at, &(_, row, column))| {
+                [row, column] == [place(at / (2 * N)), place(at % (2 * N))]
+            });
+        nodes.sort_unstable_by_key(|node| node.place);
+        whole.then_some(Self {
+            first: entries[0].0 - first,
+            nodes,
+        })
     }
 }
 

@@ -95,9 +95,11 @@ impl Subdomain {
         rank: usize,
     ) -> Self {
         let mesh = &problem.mesh;
-        let elements: Vec<usize> = (0..mesh.elements.len())
+        let mut elements: Vec<usize> = (0..mesh.elements.len())
             .filter(|&e| partition[e] == rank)
             .collect();
+        // As the linear solver goes through them.
+        elements.sort_by_key(|&e| e % mesh.nx);
         let nodes = nodes_of(elements.iter().map(|&e| &mesh.elements[e]));
         let local_of: HashMap<usize, usize> = nodes
             .iter()

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::error::ElementFailure;
 use super::history::History;
 use super::subdomain::{LocalValue, Subdomain};
-use crate::element::ElementForce;
+use crate::element::{ElementForce, NodeBlock};
 
 /// Entries of one element.
 pub(super) const ELEMENT_ENTRIES: usize = 256;
@@ -134,6 +134,13 @@ fn element_product(entries: &[f64], masses: &[f64; 8], values: [[f64; 2]; 8]) ->
     sum
 }
 
+/// Puts the entries between two nodes into those of an element.
+fn put(entries: &mut [f64], [a, b]: [usize; 2], block: NodeBlock) {
+    for (row, values) in entries[32 * a..].chunks_exact_mut(16).zip(block) {
+        row[2 * b..2 * b + 2].copy_from_slice(&values);
+    }
+}
+
 /// Of a contact point; `u` and `out` are local.
 fn add_contact_product(of: &Subdomain, point: usize, entries: &[f64], u: &[f64], out: &mut [f64]) {
     use CONTACT_LAYOUT as AT;
@@ -221,13 +228,14 @@ impl Subdomain {
         for (element, out) in elements.chunks_exact_mut(ELEMENT_ENTRIES).enumerate() {
             self.element_force(history, element, u, true, &mut local)?;
             let mass = self.kernels[element].mass();
-            for (i, row) in local.stiffness.iter().enumerate() {
-                let out = &mut out[16 * i..16 * (i + 1)];
-                for (value, stiffness) in out.iter_mut().zip(row) {
-                    *value = scale * stiffness;
-                }
-                for (b, m) in mass[i / 2].iter().enumerate() {
-                    out[2 * b + i % 2] += inertia * m;
+            for a in 0..8 {
+                for b in a..8 {
+                    let [x, y] = local.stiffness[a][b].map(|row| row.map(|k| scale * k));
+                    let [above, below] = [mass[a][b], mass[b][a]].map(|m| inertia * m);
+                    put(out, [b, a], [[x[0] + below, y[0]], [x[1], y[1] + below]]);
+                    // Of a node's own block, too, the upper triangle counts.
+                    let left = if a == b { x[1] } else { y[0] };
+                    put(out, [a, b], [[x[0] + above, x[1]], [left, y[1] + above]]);
                 }
             }
         }
