@@ -139,6 +139,11 @@ fn worker() {
                 .unwrap();
         }
     }
+    // Whoever looks at a run before its end finds no lock.
+    for path in [out.fields(), out.tools(), out.contact()] {
+        let reader = std::fs::File::open(path).unwrap();
+        rustix::fs::flock(reader, rustix::fs::FlockOperation::NonBlockingLockShared).unwrap();
+    }
     // One rank hands over too little: all ranks say so, none waits, and nothing is written.
     let too_few = vec![sample([0.0; 2], 0); part.coordinates.len().saturating_sub(1)];
     let error = sheet.write(99.0, &too_few).unwrap_err();
