@@ -26,7 +26,7 @@ pub struct Quad8 {
 pub struct ElementForce {
     /// Internal force, N per mm of width.
     pub force: [f64; DOFS],
-    /// Tangent stiffness between nodes a <= b, at [a][b], N/mm per mm of width; left alone if it was not asked for. That
+    /// Tangent stiffness between nodes a <= b, at `[a][b]`, N/mm per mm of width; left alone if it was not asked for. That
     /// between b and a is its transpose.
     pub stiffness: [[NodeBlock; 8]; 8],
 }

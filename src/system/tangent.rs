@@ -228,9 +228,9 @@ impl Subdomain {
         for (element, out) in elements.chunks_exact_mut(ELEMENT_ENTRIES).enumerate() {
             self.element_force(history, element, u, true, &mut local)?;
             let mass = self.kernels[element].mass();
-            for a in 0..8 {
-                for b in a..8 {
-                    let [x, y] = local.stiffness[a][b].map(|row| row.map(|k| scale * k));
+            for (a, blocks) in local.stiffness.iter().enumerate() {
+                for (b, block) in blocks.iter().enumerate().skip(a) {
+                    let [x, y] = block.map(|row| row.map(|k| scale * k));
                     let [above, below] = [mass[a][b], mass[b][a]].map(|m| inertia * m);
                     put(out, [b, a], [[x[0] + below, y[0]], [x[1], y[1] + below]]);
                     // Of a node's own block, too, the upper triangle counts.
