@@ -112,6 +112,11 @@ impl SheetMesh {
         self
     }
 
+    /// Which of the columns of elements along the sheet, from its middle outwards, an element is in.
+    pub fn column(&self, element: usize) -> usize {
+        element % self.nx
+    }
+
     /// Node numbers of a surface edge: left end, right end, middle.
     pub fn edge_nodes(&self, edge: &SurfaceEdge) -> [usize; 3] {
         edge.local_nodes.map(|a| self.elements[edge.element][a])

@@ -278,7 +278,7 @@ fn slices_of_nodes(local: &Subdomain) -> Vec<usize> {
     let mut slices = vec![0; local.nodes.len()];
     for (nodes, element) in local.connectivity.iter().zip(&local.elements) {
         for &node in nodes {
-            slices[node] = element % local.problem.mesh.nx;
+            slices[node] = local.problem.mesh.column(*element);
         }
     }
     slices

@@ -99,7 +99,7 @@ impl Subdomain {
             .filter(|&e| partition[e] == rank)
             .collect();
         // As the linear solver goes through them.
-        elements.sort_by_key(|&e| e % mesh.nx);
+        elements.sort_by_key(|&e| mesh.column(e));
         let nodes = nodes_of(elements.iter().map(|&e| &mesh.elements[e]));
         let local_of: HashMap<usize, usize> = nodes
             .iter()
