@@ -107,13 +107,15 @@ def at(history, time, column):
 
 
 def values(options, result):
-    """Values by (place, quantity): at the strokes to report, at full stroke, on the travel back, and released."""
+    """Values by (place, quantity): at the strokes to report, at full stroke, at the returns to report, and released."""
     _, angles, history = result
     stroke, load = float(options["stroke"]), float(options["time_load"])
     back, unload = float(options["unload_fraction"]), float(options["time_unload"])
     reported = [float(word) for word in options["report_strokes"].split(",") if word != "none"]
     times = {f"d = {depth:g} mm": load * depth / stroke for depth in reported if depth < stroke}
     times["full stroke"] = load
+    returns = [float(word) for word in options["report_returns"].split(",") if word != "none"]
+    times |= {f"{way:g} mm back": load + unload * way / (back * stroke) for way in returns if way < back * stroke}
     if back > 0.1:
         times["10 % unloaded"] = load + unload * 0.1 / back
     if back > 0.0:
@@ -171,7 +173,7 @@ def stage(place, stroke):
         return f"down to {stroke * EASY:.0f} mm" if depth <= stroke * EASY else "down from there"
     if place == "full stroke":
         return "down from there"
-    return "way back" if place.endswith("% unloaded") else "released"
+    return "way back" if place.endswith(("% unloaded", "mm back")) else "released"
 
 
 def norms(found, distances, stroke):

@@ -152,6 +152,7 @@ fn what_is_shown_reads_back_as_the_same_case() {
         ("fixed_steps_load", "90"),
         ("fixed_steps_unload", "20"),
         ("report_strokes", "3,4.5"),
+        ("report_returns", "0.5,2"),
         ("dt_initial", "1.5"),
         ("dt_min", "2e-7"),
         ("dt_max", "8.5"),

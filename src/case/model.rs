@@ -210,6 +210,8 @@ pub struct Stepping {
     pub fixed_steps_unload: usize,
     /// Travels of the punch, going down, at which a step ends exactly, mm.
     pub report_strokes: Vec<f64>,
+    /// Travels of the punch, going back, at which a step ends exactly, mm.
+    pub report_returns: Vec<f64>,
     /// Whether a solve starts from extrapolated displacements.
     pub extrapolate: bool,
     /// Absolute tolerance on the norm of the scaled residual, mm.

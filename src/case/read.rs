@@ -55,6 +55,7 @@ impl Case {
                 fixed_steps_load: table::FIXED_STEPS_LOAD.read(options)?,
                 fixed_steps_unload: table::FIXED_STEPS_UNLOAD.read(options)?,
                 report_strokes: table::REPORT_STROKES.read(options)?,
+                report_returns: table::REPORT_RETURNS.read(options)?,
                 extrapolate: table::EXTRAPOLATE.read(options)?,
                 newton_tolerance: table::NEWTON_TOLERANCE.read(options)?,
                 newton_max_iterations: table::NEWTON_MAX_ITERATIONS.read(options)?,

@@ -242,6 +242,11 @@ option_table! {
         meaning: "Travels of the punch, going down, at which a step ends exactly; those beyond the stroke are left out.",
         value: |case| case.stepping.report_strokes.clone(),
     }
+    REPORT_RETURNS: List {
+        name: "report_returns", unit: "mm", default: "none", group: Group::Stepping, kind: List(1e5),
+        meaning: "Travels of the punch, going back, at which a step ends exactly; those beyond the way back are left out.",
+        value: |case| case.stepping.report_returns.clone(),
+    }
     EXTRAPOLATE: Flag {
         name: "extrapolate", unit: "", default: "true", group: Group::Stepping, kind: Flag,
         meaning: "Start each Newton solve from displacements and contact extrapolated from the last steps.",

@@ -26,6 +26,9 @@ pub struct StepControl {
     /// Step handed out last, ms.
     planned: f64,
     largest: f64,
+    /// Whether steps of a given number are to be equal: then they are short because landmarks are near, not because longer
+    /// ones are hard, and the wanted step grows while they are.
+    equal: bool,
     /// Times to hit exactly, ascending; the last one ends the run.
     landmarks: Vec<f64>,
     calm: usize,
@@ -42,12 +45,19 @@ impl StepControl {
             wanted: first.min(largest),
             planned: first,
             largest,
+            equal: false,
             landmarks,
             calm: 0,
             touches_down: false,
         };
         control.planned = control.clip(0.0);
         control
+    }
+
+    /// Lets steps be as long as landmarks are apart again, once they have been shorter.
+    pub(super) fn with_equal_steps(mut self, equal: bool) -> Self {
+        self.equal = equal;
+        self
     }
 
     /// What the control remembers besides its settings: the step it wants (ms), and steps without growth to come.
@@ -57,6 +67,7 @@ impl StepControl {
             calm,
             planned: _,
             largest: _,
+            equal: _,
             landmarks: _,
             touches_down: _,
         } = self;
@@ -97,7 +108,8 @@ impl StepControl {
             self.calm -= 1;
         } else if iterations <= EASY_ITERATIONS {
             // A step that was clipped to a landmark does not shorten the ones after it.
-            self.wanted = self.wanted.max(dt * FACTOR).min(self.largest);
+            let easy = if self.equal { self.wanted } else { dt };
+            self.wanted = self.wanted.max(easy * FACTOR).min(self.largest);
         }
         self.touches_down = false;
         self.planned = self.clip(t);
@@ -160,6 +172,13 @@ pub(super) fn landmarks(case: &Case) -> Result<Vec<f64>, CaseError> {
         .iter()
         .map(|&depth| motion.time_at_depth(depth))
         .collect();
+    let back = motion.unload_fraction * motion.stroke;
+    let returns = case.stepping.report_returns.iter();
+    times.extend(
+        returns
+            .filter(|&&way| way < back)
+            .map(|&way| motion.time_at_return(way)),
+    );
     times.extend([motion.time_load, motion.end()]);
     let equal = |start: f64, end: f64, count: usize| {
         (1..count).map(move |k| start + (end - start) * k as f64 / count as f64)
@@ -195,6 +214,27 @@ mod tests {
         }
         assert_eq!(hit, 3);
         assert!(steps < 125, "{steps} steps");
+    }
+
+    #[test]
+    fn equal_steps_are_whole_again_some_time_after_a_refused_solve() {
+        let marks: Vec<f64> = (1..=30).map(|k| 7.0 * f64::from(k)).collect();
+        let lengths = |equal| {
+            let mut control = StepControl::new(9.0, 9.0, marks.clone()).with_equal_steps(equal);
+            let (mut t, mut taken) = (0.0, vec![]);
+            while !control.is_at(t, control.end()) {
+                let dt = if t == 7.0 { 1.75 } else { control.planned() };
+                t += dt;
+                taken.push(dt);
+                control.accepted(t, dt, 5);
+            }
+            taken
+        };
+        let equal = lengths(true);
+        assert!(equal.len() < 45, "{equal:?}");
+        assert!(equal.iter().rev().take(15).all(|dt| (dt - 7.0).abs() < 1e-9), "{equal:?}");
+        // Steps that are free to grow are halved between such landmarks.
+        assert!(lengths(false).len() > 55);
     }
 
     #[test]

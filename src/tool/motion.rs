@@ -43,6 +43,11 @@ impl PunchMotion {
     pub fn time_at_depth(&self, depth: f64) -> f64 {
         self.time_load * depth / self.stroke
     }
+
+    /// The time of the travel back at which the punch has gone back by `way` (mm), ms.
+    pub fn time_at_return(&self, way: f64) -> f64 {
+        self.time_load + self.time_unload * way / (self.unload_fraction * self.stroke)
+    }
 }
 
 /// How a tool moves.
@@ -82,5 +87,6 @@ mod tests {
         assert_eq!(motion.end(), 1000.0);
         assert!((motion.travel(1000.0) - 31.35).abs() < 1e-12 && motion.travel(450.0) == 14.25);
         assert!((motion.depth(motion.time_at_depth(10.0)) - 10.0).abs() < 1e-14);
+        assert!((motion.depth(motion.time_at_return(1.0)) - 27.5).abs() < 1e-14);
     }
 }

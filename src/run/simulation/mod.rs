@@ -90,12 +90,14 @@ impl Simulation {
         spent: Spent,
     ) -> Result<Self, RunError> {
         let stepping = &case.stepping;
+        let free_steps = stepping.fixed_steps_load == 0 && stepping.fixed_steps_unload == 0;
         let progress = Progress {
             accepted: Accepted::start(system.initial_unknowns()?, history),
             attempt: Attempt::default(),
             refusals: Vec::new(),
             sensitivity: None,
-            control: StepControl::new(stepping.dt_initial, stepping.dt_max, landmarks),
+            control: StepControl::new(stepping.dt_initial, stepping.dt_max, landmarks)
+                .with_equal_steps(!free_steps),
             stop_watch,
             recorder,
             shown: Vec::new(),
@@ -109,7 +111,7 @@ impl Simulation {
             most_iterations: stepping.newton_max_iterations,
             least_step: stepping.dt_min,
             extrapolate: stepping.extrapolate,
-            free_steps: stepping.fixed_steps_load == 0 && stepping.fixed_steps_unload == 0,
+            free_steps,
             show_iterations: case.output.iterations,
             spent,
             identity: identity(case),
