@@ -90,7 +90,18 @@ fn assembly(c: &mut Criterion) {
     group.bench_function("residual", |b| {
         b.iter(|| {
             local
-                .residual(&history, 30.0, black_box(&u), &u, &mut residual)
+                .residual(&history, 30.0, (black_box(&u), &u), None, &mut residual)
+                .unwrap()
+        });
+    });
+    group.bench_function("residual and tangent", |b| {
+        b.iter(|| {
+            let kept = Some(&mut entries);
+            local
+                .residual(&history, 30.0, (black_box(&u), &u), kept, &mut residual)
+                .unwrap();
+            local
+                .jacobian(&history, 30.0, black_box(&u), 2.5, &mut entries)
                 .unwrap()
         });
     });

@@ -58,6 +58,13 @@ fn allocates_nothing(system: &System, friction: f64) {
         let evaluated = system.jacobian(&history, 30.0, &unknowns, 2.5, &mut entries);
         assert!(evaluated.is_ok());
     });
+    count("residual and tangent", &mut || {
+        let at = (&*unknowns, Some(&*acceleration));
+        let evaluated = system.residual_and_stiffness(&history, 30.0, at, &mut entries, &mut out);
+        assert!(evaluated.is_ok());
+        let evaluated = system.jacobian(&history, 30.0, &unknowns, 2.5, &mut entries);
+        assert!(evaluated.is_ok());
+    });
     count("factorisation and solve", &mut || {
         assert!(condensed.factor(&entries, &[]).unwrap());
         condensed.solve(&out, &mut step).unwrap();

@@ -252,7 +252,7 @@ fn assemble(
         let gather = |x: &[f64]| rows.iter().map(|&r| x[r]).collect::<Vec<f64>>();
         let mut out = vec![0.0; rows.len()];
         local
-            .residual(&history, t, &gather(u), &gather(a), &mut out)
+            .residual(&history, t, (&gather(u), &gather(a)), None, &mut out)
             .unwrap();
         rows.iter()
             .zip(&out)
@@ -304,6 +304,44 @@ fn full_jacobian_agrees(problem: &Problem) {
     }
     let scale = jacobian.iter().fold(0.0_f64, |m, k| m.max(k.abs()));
     assert!(worst < 1e-6 * scale, "{worst:.2e} of {scale:.2e}");
+}
+
+#[test]
+fn a_residual_leaves_the_jacobian_of_its_place_and_of_no_other() {
+    let mut problem = small_problem(6, 2);
+    problem.friction_coefficient = 0.2;
+    let numbering = Numbering::new(&problem, &vec![0; problem.mesh.elements.len()], 1);
+    let local = Subdomain::new(problem.clone(), &vec![0; 12], &numbering, 0);
+    let history = History::virgin(&local);
+    let evaluate = |seed: u64, kept: Option<&mut JacobianEntries>| {
+        let (t, u, a) = deformed_unknowns(&problem, seed);
+        let mut out = vec![0.0; u.len()];
+        local
+            .residual(&history, t, (&u, &a), kept, &mut out)
+            .unwrap();
+        out
+    };
+    let jacobian = |seed: u64, entries: &mut JacobianEntries| {
+        let (t, u, _) = deformed_unknowns(&problem, seed);
+        local.jacobian(&history, t, &u, 2.5, entries).unwrap();
+        entries.values().to_vec()
+    };
+    let alone = |seed| jacobian(seed, &mut JacobianEntries::new(&local));
+    assert_ne!(alone(11), alone(12));
+    let mut entries = JacobianEntries::new(&local);
+    assert_eq!(evaluate(11, Some(&mut entries)), evaluate(11, None));
+    // What was left is used once: inertia would be in it twice.
+    assert_eq!(jacobian(11, &mut entries), alone(11));
+    assert_eq!(jacobian(11, &mut entries), alone(11));
+    evaluate(11, Some(&mut entries));
+    assert_eq!(jacobian(12, &mut entries), alone(12));
+    // Who forgets has it evaluated, here with another history.
+    evaluate(11, Some(&mut entries));
+    entries.forget();
+    let (t, u, _) = deformed_unknowns(&problem, 11);
+    let later = history.advanced(&local, t, &u).unwrap();
+    local.jacobian(&later, t, &u, 2.5, &mut entries).unwrap();
+    assert_ne!(entries.values(), alone(11));
 }
 
 #[test]

@@ -80,6 +80,7 @@ impl Quad8 {
 
     /// Response of one Gauss point at displacements `u` (mm) with its deformation gradient and its
     /// reference volume (mm² per mm of width, times mm).
+    #[inline]
     pub fn point_response(
         &self,
         point: usize,

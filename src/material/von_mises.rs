@@ -111,6 +111,7 @@ impl VonMises {
     ///
     /// # Errors
     /// The determinant of `f` is not positive, or strains are not finite.
+    #[inline]
     pub fn respond(&self, f: &Matrix, state: &PointState) -> Result<Response, DeformationError> {
         let determinant = plane::determinant(f);
         if determinant <= 0.0 {

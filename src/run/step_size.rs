@@ -232,7 +232,14 @@ mod tests {
         };
         let equal = lengths(true);
         assert!(equal.len() < 45, "{equal:?}");
-        assert!(equal.iter().rev().take(15).all(|dt| (dt - 7.0).abs() < 1e-9), "{equal:?}");
+        assert!(
+            equal
+                .iter()
+                .rev()
+                .take(15)
+                .all(|dt| (dt - 7.0).abs() < 1e-9),
+            "{equal:?}"
+        );
         // Steps that are free to grow are halved between such landmarks.
         assert!(lengths(false).len() > 55);
     }

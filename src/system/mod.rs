@@ -97,6 +97,7 @@ struct Buffers {
 
 struct Events {
     residual: Event,
+    both: Event,
     jacobian: Event,
 }
 
@@ -145,6 +146,7 @@ impl System {
             template,
             events: Events {
                 residual: Event::new("SheetResidual")?,
+                both: Event::new("SheetResAndJac")?,
                 jacobian: Event::new("SheetJacobian")?,
             },
         })
@@ -264,6 +266,34 @@ impl System {
         out: &mut VectorRef,
     ) -> Result<(), EvaluationError> {
         let _event = self.events.residual.begin();
+        self.evaluate(history, t, (u, a), None, out)
+    }
+
+    /// The residual, and in `entries` all of a Jacobian at the same place but its inertia, for [`System::jacobian`]: an
+    /// element has its force on the way to its stiffness, so both take little more than the Jacobian alone. Collective.
+    ///
+    /// # Errors
+    /// As [`System::residual`].
+    pub fn residual_and_stiffness(
+        &self,
+        history: &History,
+        t: f64,
+        at: (&VectorRef, Option<&VectorRef>),
+        entries: &mut JacobianEntries,
+        out: &mut VectorRef,
+    ) -> Result<(), EvaluationError> {
+        let _event = self.events.both.begin();
+        self.evaluate(history, t, at, Some(entries), out)
+    }
+
+    fn evaluate(
+        &self,
+        history: &History,
+        t: f64,
+        (u, a): (&VectorRef, Option<&VectorRef>),
+        stiffness: Option<&mut JacobianEntries>,
+        out: &mut VectorRef,
+    ) -> Result<(), EvaluationError> {
         let buffers = &mut *self.buffers.borrow_mut();
         self.ghosts.forward(u, &mut buffers.u)?;
         match a {
@@ -271,7 +301,7 @@ impl System {
             None => buffers.a.fill(0.0),
         }
         let Buffers { u, a, residual } = buffers;
-        let evaluated = self.local.residual(history, t, u, a, residual);
+        let evaluated = self.local.residual(history, t, (u, a), stiffness, residual);
         // The sum is collective: every rank takes part, whatever happened on it.
         out.set_all(0.0)?;
         self.ghosts.reverse_add(residual, out)?;

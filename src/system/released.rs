@@ -96,7 +96,7 @@ fn held_nodes(
 ) -> Result<Vec<HeldNode>, SystemError> {
     let local = system.local();
     let mut forces = vec![0.0; values.len()];
-    let evaluated = local.add_internal_forces(history, values, &mut forces);
+    let evaluated = local.add_internal_forces(history, values, None, &mut forces);
     FailedElement::agree(system.comm(), evaluated)?;
     system.sum_over_ranks(&mut forces)?;
     let owned = (0..local.nodes.len()).filter(|&n| local.owned[n]);

@@ -12,24 +12,29 @@
 use super::error::ElementFailure;
 use super::history::History;
 use super::subdomain::{LocalContact, Subdomain};
-use crate::contact::{FrictionState, PointPosition};
+use super::tangent::{CONTACT_ENTRIES, ELEMENT_ENTRIES, JacobianEntries, put_contact, put_element};
+use crate::contact::{FrictionState, PointPosition, Traction};
 use crate::element::ElementForce;
 
 impl Subdomain {
     /// This rank's contributions to the residual at time `t` (ms), unknowns `u` and their second time derivatives `a`
-    /// (all local; mm, mm/ms²).
+    /// (all local; mm, mm/ms²), and where it is wanted all of the Jacobian there but its inertia.
     pub fn residual(
         &self,
         history: &History,
         t: f64,
-        u: &[f64],
-        a: &[f64],
+        (u, a): (&[f64], &[f64]),
+        mut stiffness: Option<&mut JacobianEntries>,
         out: &mut [f64],
     ) -> Result<(), ElementFailure> {
         out.fill(0.0);
-        self.add_internal_forces(history, u, out)?;
+        let (elements, contacts) = stiffness.as_deref_mut().map(JacobianEntries::begin).unzip();
+        self.add_internal_forces(history, u, elements, out)?;
         self.add_inertia(a, out);
-        self.add_contact(history, t, u, out);
+        self.add_contact(history, t, u, contacts, out);
+        if let Some(entries) = stiffness {
+            entries.keep(t, u);
+        }
         let scale = 1.0 / self.problem.young_modulus;
         for load in &self.loads {
             out[load.unknown] -= scale * load.value * load.factor.at(t);
@@ -46,20 +51,24 @@ impl Subdomain {
     }
 
     /// Adds the internal forces of this rank's elements at unknowns `u` (local), divided by Young's
-    /// modulus (mm), to the displacement rows of `out`.
-    pub fn add_internal_forces(
+    /// modulus (mm), to the displacement rows of `out`, and puts their stiffness where it is wanted.
+    pub(super) fn add_internal_forces(
         &self,
         history: &History,
         u: &[f64],
+        mut stiffness: Option<&mut [f64]>,
         out: &mut [f64],
     ) -> Result<(), ElementFailure> {
         let scale = 1.0 / self.problem.young_modulus;
         let mut local = ElementForce::ZERO;
         for element in 0..self.elements.len() {
-            self.element_force(history, element, u, false, &mut local)?;
+            self.element_force(history, element, u, stiffness.is_some(), &mut local)?;
             for (a, &n) in self.connectivity[element].iter().enumerate() {
                 out[2 * n] += scale * local.force[2 * a];
                 out[2 * n + 1] += scale * local.force[2 * a + 1];
+            }
+            if let Some(entries) = &mut stiffness {
+                put_element(&local, scale, &mut entries[ELEMENT_ENTRIES * element..]);
             }
         }
         Ok(())
@@ -84,30 +93,44 @@ impl Subdomain {
         }
     }
 
-    fn add_contact(&self, history: &History, t: f64, u: &[f64], out: &mut [f64]) {
-        for point in 0..self.contacts.len() {
-            self.add_contact_point(history, t, u, point, out);
+    /// Adds the forces of contact points, sets their own rows, and puts the slopes of both where they are wanted.
+    fn add_contact(
+        &self,
+        history: &History,
+        t: f64,
+        u: &[f64],
+        mut slopes: Option<&mut [f64]>,
+        out: &mut [f64],
+    ) {
+        for (point, contact) in self.contacts.iter().enumerate() {
+            let (position, traction) = self.contact_answer(history, t, u, point);
+            let m = self.multiplier(point);
+            let rows = contact.law.rows(&position, u[m], u[m + 1], &traction);
+            for (i, force) in rows.force.iter().enumerate() {
+                out[2 * contact.nodes[i / 2] + i % 2] += force;
+            }
+            out[m] = rows.closure;
+            out[m + 1] = rows.complementarity;
+            if let Some(entries) = &mut slopes {
+                let tangent = contact.law.tangent(&position, u[m], &traction);
+                put_contact(&tangent, &mut entries[CONTACT_ENTRIES * point..]);
+            }
         }
     }
 
-    pub(super) fn add_contact_point(
+    /// Where a contact point is at time `t` and unknowns `u`, and its friction.
+    pub(super) fn contact_answer(
         &self,
         history: &History,
         t: f64,
         u: &[f64],
         point: usize,
-        out: &mut [f64],
-    ) {
+    ) -> (PointPosition, Traction) {
         let (contact, committed) = (&self.contacts[point], &history.friction[point]);
-        let m = self.multiplier(point);
         let position = self.contact_position(contact, committed, t, u);
-        let traction = contact.law.traction(&position, u[m], committed);
-        let rows = contact.law.rows(&position, u[m], u[m + 1], &traction);
-        for (i, force) in rows.force.iter().enumerate() {
-            out[2 * contact.nodes[i / 2] + i % 2] += force;
-        }
-        out[m] = rows.closure;
-        out[m + 1] = rows.complementarity;
+        let multiplier = u[self.multiplier(point)];
+        let traction = contact.law.traction(&position, multiplier, committed);
+        (position, traction)
     }
 
     /// Internal force of a local element, and its stiffness if it is wanted.

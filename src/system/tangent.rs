@@ -5,12 +5,13 @@ use std::ops::Range;
 use super::error::ElementFailure;
 use super::history::History;
 use super::subdomain::{LocalValue, Subdomain};
+use crate::contact::ContactTangent;
 use crate::element::{ElementForce, NodeBlock};
 
 /// Entries of one element.
 pub(super) const ELEMENT_ENTRIES: usize = 256;
 /// Entries of one contact point: 6 x 6 and 6 in the equilibrium rows, 8 in each of its own.
-const CONTACT_ENTRIES: usize = 58;
+pub(super) const CONTACT_ENTRIES: usize = 58;
 
 /// Where the entries of a contact point are among its [`CONTACT_ENTRIES`].
 pub(super) struct ContactLayout {
@@ -45,6 +46,15 @@ pub struct JacobianEntries {
     contact_count: usize,
     /// What a unit of [`crate::element::Quad8::mass`] adds to them, 1/mm.
     inertia: f64,
+    kept: Kept,
+}
+
+/// What a residual has left: everything but inertia.
+#[derive(Clone, Debug, Default)]
+struct Kept {
+    /// The time (ms) and local unknowns it is for; none if there is nothing.
+    t: Option<f64>,
+    u: Vec<f64>,
 }
 
 impl JacobianEntries {
@@ -57,7 +67,31 @@ impl JacobianEntries {
             element_count,
             contact_count,
             inertia: 0.0,
+            kept: Kept::default(),
         }
+    }
+
+    /// Of elements and of contact points, to be put anew: nothing is kept until [`JacobianEntries::keep`] says so.
+    pub(super) fn begin(&mut self) -> (&mut [f64], &mut [f64]) {
+        self.forget();
+        let (elements, contacts, _) = self.parts();
+        (elements, contacts)
+    }
+
+    /// Elements and contact points have theirs at time `t` (ms) and these local unknowns.
+    pub(super) fn keep(&mut self, t: f64, u: &[f64]) {
+        self.kept.t = Some(t);
+        self.kept.u.clear();
+        self.kept.u.extend_from_slice(u);
+    }
+
+    /// Drops what a residual has left for the next Jacobian: the history has changed, or it is elsewhere.
+    pub fn forget(&mut self) {
+        self.kept.t = None;
+    }
+
+    fn are_kept_for(&self, t: f64, u: &[f64]) -> bool {
+        self.kept.t == Some(t) && self.kept.u == u
     }
 
     /// All of them.
@@ -134,11 +168,37 @@ fn element_product(entries: &[f64], masses: &[f64; 8], values: [[f64; 2]; 8]) ->
     sum
 }
 
+/// Puts an element's stiffness times `scale` into its entries.
+pub(super) fn put_element(element: &ElementForce, scale: f64, entries: &mut [f64]) {
+    for (a, blocks) in element.stiffness.iter().enumerate() {
+        for (b, block) in blocks.iter().enumerate().skip(a) {
+            let [x, y] = block.map(|row| row.map(|k| scale * k));
+            put(entries, [b, a], [[x[0], y[0]], [x[1], y[1]]]);
+            // Of a node's own block, too, the upper triangle counts.
+            let left = if a == b { x[1] } else { y[0] };
+            put(entries, [a, b], [x, [left, y[1]]]);
+        }
+    }
+}
+
 /// Puts the entries between two nodes into those of an element.
 fn put(entries: &mut [f64], [a, b]: [usize; 2], block: NodeBlock) {
     for (row, values) in entries[32 * a..].chunks_exact_mut(16).zip(block) {
         row[2 * b..2 * b + 2].copy_from_slice(&values);
     }
+}
+
+/// Puts a contact point's tangent into its entries.
+pub(super) fn put_contact(tangent: &ContactTangent, out: &mut [f64]) {
+    use CONTACT_LAYOUT as AT;
+    out[AT.force_u].copy_from_slice(tangent.force_u.as_flattened());
+    out[AT.force_multiplier].copy_from_slice(&tangent.force_multiplier);
+    out[AT.closure_u].copy_from_slice(&tangent.closure_u);
+    out[AT.closure_multiplier] = tangent.compliance;
+    out[AT.closure_gap] = tangent.closure_gap;
+    out[AT.complementarity_u].copy_from_slice(&tangent.complementarity_u);
+    out[AT.complementarity_multiplier] = tangent.complementarity_multiplier;
+    out[AT.complementarity_gap] = tangent.complementarity_gap;
 }
 
 /// Of a contact point; `u` and `out` are local.
@@ -211,7 +271,7 @@ impl Subdomain {
     }
 
     /// Evaluates the entries at time `t` and unknowns `u`, with `shift` the derivative of the acceleration by the
-    /// unknown (1/ms²).
+    /// unknown (1/ms²); what a residual there has left in them is not evaluated again.
     pub fn jacobian(
         &self,
         history: &History,
@@ -220,53 +280,57 @@ impl Subdomain {
         shift: f64,
         entries: &mut JacobianEntries,
     ) -> Result<(), ElementFailure> {
-        let scale = 1.0 / self.problem.young_modulus;
-        let inertia = scale * shift * self.problem.density;
-        entries.inertia = inertia;
-        let (elements, contacts, supports) = entries.parts();
-        let mut local = ElementForce::ZERO;
-        for (element, out) in elements.chunks_exact_mut(ELEMENT_ENTRIES).enumerate() {
-            self.element_force(history, element, u, true, &mut local)?;
-            let mass = self.kernels[element].mass();
-            for (a, blocks) in local.stiffness.iter().enumerate() {
-                for (b, block) in blocks.iter().enumerate().skip(a) {
-                    let [x, y] = block.map(|row| row.map(|k| scale * k));
-                    let [above, below] = [mass[a][b], mass[b][a]].map(|m| inertia * m);
-                    put(out, [b, a], [[x[0] + below, y[0]], [x[1], y[1] + below]]);
-                    // Of a node's own block, too, the upper triangle counts.
-                    let left = if a == b { x[1] } else { y[0] };
-                    put(out, [a, b], [[x[0] + above, x[1]], [left, y[1] + above]]);
-                }
-            }
+        if !entries.are_kept_for(t, u) {
+            self.stiffness(history, t, u, entries)?;
         }
-        for (point, out) in contacts.chunks_exact_mut(CONTACT_ENTRIES).enumerate() {
-            self.contact_jacobian(history, t, u, point, out);
-        }
-        supports.fill(1.0);
+        self.put_inertia(shift, entries);
         Ok(())
     }
 
-    fn contact_jacobian(
+    fn stiffness(
         &self,
         history: &History,
         t: f64,
         u: &[f64],
-        point: usize,
-        out: &mut [f64],
-    ) {
-        use CONTACT_LAYOUT as AT;
-        let (contact, committed) = (&self.contacts[point], &history.friction[point]);
-        let multiplier = u[self.multiplier(point)];
-        let position = self.contact_position(contact, committed, t, u);
-        let traction = contact.law.traction(&position, multiplier, committed);
-        let tangent = contact.law.tangent(&position, multiplier, &traction);
-        out[AT.force_u].copy_from_slice(tangent.force_u.as_flattened());
-        out[AT.force_multiplier].copy_from_slice(&tangent.force_multiplier);
-        out[AT.closure_u].copy_from_slice(&tangent.closure_u);
-        out[AT.closure_multiplier] = tangent.compliance;
-        out[AT.closure_gap] = tangent.closure_gap;
-        out[AT.complementarity_u].copy_from_slice(&tangent.complementarity_u);
-        out[AT.complementarity_multiplier] = tangent.complementarity_multiplier;
-        out[AT.complementarity_gap] = tangent.complementarity_gap;
+        entries: &mut JacobianEntries,
+    ) -> Result<(), ElementFailure> {
+        let scale = 1.0 / self.problem.young_modulus;
+        let (elements, contacts) = entries.begin();
+        let mut local = ElementForce::ZERO;
+        for (element, out) in elements.chunks_exact_mut(ELEMENT_ENTRIES).enumerate() {
+            self.element_force(history, element, u, true, &mut local)?;
+            put_element(&local, scale, out);
+        }
+        for (point, out) in contacts.chunks_exact_mut(CONTACT_ENTRIES).enumerate() {
+            let (position, traction) = self.contact_answer(history, t, u, point);
+            let (law, multiplier) = (&self.contacts[point].law, u[self.multiplier(point)]);
+            put_contact(&law.tangent(&position, multiplier, &traction), out);
+        }
+        Ok(())
+    }
+
+    /// Adds the inertia to entries that have everything else, and the rows of prescribed displacements. What was kept has
+    /// been used up.
+    fn put_inertia(&self, shift: f64, entries: &mut JacobianEntries) {
+        entries.forget();
+        let inertia = 1.0 / self.problem.young_modulus * shift * self.problem.density;
+        entries.inertia = inertia;
+        let (elements, _, supports) = entries.parts();
+        supports.fill(1.0);
+        if inertia == 0.0 {
+            return;
+        }
+        for (kernel, out) in self
+            .kernels
+            .iter()
+            .zip(elements.chunks_exact_mut(ELEMENT_ENTRIES))
+        {
+            for (a, masses) in kernel.mass().iter().enumerate() {
+                for (b, mass) in masses.iter().enumerate() {
+                    out[32 * a + 2 * b] += inertia * mass;
+                    out[32 * a + 16 + 2 * b + 1] += inertia * mass;
+                }
+            }
+        }
     }
 }

@@ -148,6 +148,29 @@ impl LinearSolve {
         }
     }
 
+    /// Evaluates the residual at time `t`, unknowns `u` and accelerations `a`. Where the Jacobian is `expected` to be asked
+    /// for there, too, what both need is evaluated once. Collective.
+    ///
+    /// # Errors
+    /// As [`System::residual`].
+    pub fn residual(
+        &self,
+        history: &History,
+        t: f64,
+        (u, a): (&VectorRef, Option<&VectorRef>),
+        expected: bool,
+        out: &mut VectorRef,
+    ) -> Result<(), EvaluationError> {
+        let entries = &mut *self.entries.borrow_mut();
+        if expected {
+            return self
+                .system
+                .residual_and_stiffness(history, t, (u, a), entries, out);
+        }
+        entries.forget();
+        self.system.residual(history, t, u, a, out)
+    }
+
     /// Evaluates the Jacobian at time `t` and unknowns `u` for the next solve and, unless it is a placeholder, for
     /// `out`; `shift` is the derivative of the acceleration by the unknown. Collective.
     ///

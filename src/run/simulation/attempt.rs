@@ -4,6 +4,10 @@ use crate::run::diagnosis::SolveWatch;
 use crate::run::newton::{Damping, TangentInertia, limited_length};
 use crate::system::ElementFailure;
 
+/// From a residual above so many times the tolerance the next iteration rarely converges: of 896 residuals of the benchmark
+/// this is wrong about 61.
+const FAR_FROM_CONVERGED: f64 = 1e3;
+
 /// An attempt at a step: it begins before the solve and is over when the step is accepted or refused.
 #[derive(Default)]
 pub(in crate::run) struct Attempt {
@@ -29,6 +33,13 @@ impl Attempt {
             expected,
             ..Self::default()
         }
+    }
+
+    /// Whether the residual evaluated next will probably be followed by a tangent at the same place, as it does not meet the
+    /// tolerance (mm). What depends on the answer is where time is spent, not what is found.
+    pub fn goes_on(&self, tolerance: f64) -> bool {
+        let last = self.watch.norms().last();
+        last.is_none_or(|norm| *norm > FAR_FROM_CONVERGED * tolerance)
     }
 
     /// Inertia of the next tangent as a multiple of its own.

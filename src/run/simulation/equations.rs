@@ -20,13 +20,15 @@ impl Simulation {
         let matrix = linear.matrix()?;
         let start = &self.progress.borrow().accepted.unknowns.to_owned()?;
         let (for_residual, for_jacobian) = (Rc::clone(self), Rc::clone(self));
-        let linear = Rc::clone(linear);
+        let (linear, with_residual) = (Rc::clone(linear), Rc::clone(linear));
         match self.settings.dynamics {
             Dynamics::Slow => {
                 ts.set_second_order(
                     start,
                     matrix,
-                    move |t, u, _, a, out| for_residual.residual(t, u, Some(a), out),
+                    move |t, u, _, a, out| {
+                        for_residual.residual(&with_residual, t, (u, Some(a)), out)
+                    },
                     move |t, u, _, _, _, shift, out| {
                         for_jacobian.jacobian(&linear, t, u, shift, out)
                     },
@@ -42,7 +44,7 @@ impl Simulation {
                 ts.set_implicit(
                     start,
                     matrix,
-                    move |t, u, _, out| for_residual.residual(t, u, None, out),
+                    move |t, u, _, out| for_residual.residual(&with_residual, t, (u, None), out),
                     move |t, u, _, _, out| for_jacobian.jacobian(&linear, t, u, 0.0, out),
                 )?;
                 ts.set_solution(start)?;
@@ -54,14 +56,15 @@ impl Simulation {
     /// The residual from the last accepted state; the attempt keeps which element could not be evaluated.
     fn residual(
         &self,
+        linear: &LinearSolve,
         t: f64,
-        u: &VectorRef,
-        a: Option<&VectorRef>,
+        at: (&VectorRef, Option<&VectorRef>),
         out: &mut VectorRef,
     ) -> Evaluation {
         let progress = &mut *self.progress.borrow_mut();
         let history = &progress.accepted.history;
-        let evaluated = self.settings.system.residual(history, t, u, a, out);
+        let expected = progress.attempt.goes_on(self.settings.tolerance);
+        let evaluated = linear.residual(history, t, at, expected, out);
         if let Err(EvaluationError::Element(failure)) = &evaluated {
             progress.attempt.failure = Some(failure.clone());
         }
