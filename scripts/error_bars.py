@@ -12,12 +12,15 @@ OPTIONS go to the program as they are. Beside the run they describe its companio
   steps      steps of twice the length
   scatter-N  steps of 17/18, 16/18 and 15/18 of the length
 
-A bar is max(mesh, integration) + spacing + steps + scatter: mesh is the difference to `coarse` over 2^3 - 1; integration, spacing
-and steps are those to `gauss`, `spacing` and `steps`; scatter is the largest difference to a `scatter-N`. Mesh and
-integration see one and the same error, so the larger counts. docs/error-bars.md says why, and how good the bars are.
+A bar is max(mesh, integration) + spacing + max(steps, scatter): mesh is the difference to `coarse` over 2^3 - 1; integration,
+spacing and steps are those to `gauss`, `spacing` and `steps`; scatter is the largest difference to a `scatter-N`. Mesh and
+integration see one and the same error, and so do steps and scatter: the larger counts. docs/error-bars.md says why, and how good
+the bars are. -report_returns adds places on the way back.
 
 With --effectivity a reference of twice the elements in each direction and half the step is made as well, and each bar is
-compared with the distance to it, place by place, and the bars of a part of the path with its distances. Tables are
+compared with the distance to it, place by place, and the bars of a part of the path with its distances. There mesh and step can
+cancel, so a run with the finer mesh and one with the shorter step are made, too, and a second effectivity is that to the sum of
+the distances to these two. Tables are
 Markdown on standard output; results-error-bars/error-bars.csv holds the parts. The program is target/release/ssnp155, or
 $SSNP155; $ERROR_BARS is another folder for the results. With REUSE=1 a run that is there is not made again.
 """
@@ -42,6 +45,8 @@ QUANTITIES = {"force_N": "force N", "dy_A_sheet_mm": "DY of A mm", "angle_deg": 
 ANGLE = "angle deg"
 # Share of the stroke up to which the path is smooth on any mesh.
 EASY = 20 / 28.5
+# Two places closer than this, ms, are one.
+SAME_TIME = 1e-6
 PARTS = ["mesh", "integration", "spacing", "steps", "scatter"]
 
 
@@ -116,8 +121,9 @@ def values(options, result):
     times["full stroke"] = load
     returns = [float(word) for word in options["report_returns"].split(",") if word != "none"]
     times |= {f"{way:g} mm back": load + unload * way / (back * stroke) for way in returns if way < back * stroke}
-    if back > 0.1:
-        times["10 % unloaded"] = load + unload * 0.1 / back
+    tenth = load + unload * 0.1 / back if back > 0.1 else load
+    if all(abs(time - tenth) > SAME_TIME for time in times.values()):
+        times["10 % unloaded"] = tenth
     if back > 0.0:
         times["withdrawn" if back == 1.0 else f"{100 * back:g} % unloaded"] = load + unload
     found = {}
@@ -140,7 +146,7 @@ def bars(value, beside):
         parts = {"mesh": away["coarse"] / (2**ORDER - 1), "integration": away.get("gauss", 0.0),
                  "spacing": away.get("spacing", 0.0), "steps": away["steps"],
                  "scatter": max(distance for name, distance in away.items() if name.startswith("scatter"))}
-        bar = max(parts["mesh"], parts["integration"]) + parts["spacing"] + parts["steps"] + parts["scatter"]
+        bar = max(parts["mesh"], parts["integration"]) + parts["spacing"] + max(parts["steps"], parts["scatter"])
         found[key] = {**parts, "bar": bar}
     return found
 
@@ -176,21 +182,26 @@ def stage(place, stroke):
     return "way back" if place.endswith(("% unloaded", "mm back")) else "released"
 
 
-def norms(found, distances, stroke):
-    """Effectivity of a quantity along a part of the path: norm of its bars over norm of its distances.
+def norms(found, distances, apart, stroke):
+    """Effectivity of a quantity along a part of the path: norm of its bars over norm of its distances to the reference, and
+    over that of its distances to a finer mesh and a shorter step apart.
 
     A distance that passes through zero somewhere, as any does that has two signs, gives that place an effectivity without
     a bound; norms are what an estimate can be held to.
     """
     squares = {}
     for (place, quantity), distance in distances.items():
-        sums = squares.setdefault((stage(place, stroke), quantity), [0, 0.0, 0.0])
-        sums[0] += 1
-        sums[1] += found[place, quantity]["bar"] ** 2
-        sums[2] += distance**2
-    return [[*key, str(places), two_digits(math.sqrt(bar / places)), two_digits(math.sqrt(distance / places)),
-             f"{math.sqrt(bar / distance):.2f}" if distance > 0.0 else "-"]
-            for key, (places, bar, distance) in squares.items()]
+        key = place, quantity
+        terms = (1, found[key]["bar"] ** 2, distance**2, apart[key] ** 2)
+        sums = squares.setdefault((stage(place, stroke), quantity), (0, 0.0, 0.0, 0.0))
+        squares[stage(place, stroke), quantity] = tuple(map(sum, zip(sums, terms)))
+    rows = []
+    for key, (places, bar, *away) in squares.items():
+        row = [*key, str(places), two_digits(math.sqrt(bar / places))]
+        for distance in away:
+            row += [two_digits(math.sqrt(distance / places)), f"{math.sqrt(bar / distance):.2f}" if distance > 0.0 else "-"]
+        rows.append(row)
+    return rows
 
 
 def main(arguments):
@@ -211,16 +222,22 @@ def main(arguments):
              for key, bar in found.items()}
     if judged:
         finer = mesh(2 * int(options["sheet_nx"]), 2 * int(options["sheet_ny"]))
-        reference = values(options, run("reference", [*extra, *finer, *scaled_steps(options, 0.5)]))
-        distances = {key: abs(value[key] - reference[key]) for key in value}
+        shorter = scaled_steps(options, 0.5)
+        away = {}
+        for name, changed in (("reference", [*finer, *shorter]), ("finer", finer), ("shorter", shorter)):
+            other = values(options, run(name, [*extra, *changed]))
+            away[name] = {key: abs(value[key] - other[key]) for key in value}
+        distances = away["reference"]
+        apart = {key: away["finer"][key] + away["shorter"][key] for key in value}
         heads += ["distance to the reference", "effectivity"]
         for key, row in shown.items():
             distance = distances[key]
             row += [two_digits(distance), f"{found[key]['bar'] / distance:.2f}" if distance > 0.0 else "-"]
     table(heads, shown.values())
     if judged:
-        table(["part of the path", "quantity", "places", "bars, root mean square", "distances", "effectivity"],
-              norms(found, distances, float(options["stroke"])))
+        table(["part of the path", "quantity", "places", "bars, root mean square", "distances", "effectivity",
+               "finer mesh and shorter step apart", "effectivity"],
+              norms(found, distances, apart, float(options["stroke"])))
 
 
 if __name__ == "__main__":
