@@ -2,7 +2,7 @@
 //!
 //! Units are mm, N, MPa, g and ms throughout. ARCHITECTURE.md says what lives where.
 
-#![deny(unsafe_code)]
+#![forbid(unsafe_code)]
 #![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used))]
 
 pub mod case;

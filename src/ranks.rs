@@ -30,13 +30,39 @@ pub fn gather_lists<T: Equivalence + Clone + Default>(
 ) -> Vec<T> {
     let mut counts = vec![0_i32; comm.size().unsigned_abs() as usize];
     comm.all_gather_into(&(mine.len() as i32), &mut counts[..]);
-    let starts: Vec<i32> = counts
-        .iter()
-        .scan(0, |end, count| Some(std::mem::replace(end, *end + count)))
-        .collect();
+    let starts = starts(&counts);
     let mut all = vec![T::default(); counts.iter().sum::<i32>().unsigned_abs() as usize];
     comm.all_gather_varcount_into(mine, &mut PartitionMut::new(&mut all[..], counts, starts));
     all
+}
+
+/// The lists of all ranks, one after the other in the order of the ranks, on rank 0, and nothing on the others. Collective.
+pub fn gather_on_first<T: Equivalence + Clone + Default>(
+    comm: &impl Communicator,
+    mine: &[T],
+) -> Option<Vec<T>> {
+    let first = comm.process_at_rank(0);
+    let count = mine.len() as i32;
+    if comm.rank() != 0 {
+        first.gather_into(&count);
+        first.gather_varcount_into(mine);
+        return None;
+    }
+    let mut counts = vec![0_i32; comm.size().unsigned_abs() as usize];
+    first.gather_into_root(&count, &mut counts[..]);
+    let starts = starts(&counts);
+    let mut all = vec![T::default(); counts.iter().sum::<i32>().unsigned_abs() as usize];
+    let mut parts = PartitionMut::new(&mut all[..], counts, starts);
+    first.gather_varcount_into_root(mine, &mut parts);
+    Some(all)
+}
+
+/// Where lists of these lengths start when they follow each other.
+fn starts(counts: &[i32]) -> Vec<i32> {
+    counts
+        .iter()
+        .scan(0, |end, count| Some(std::mem::replace(end, *end + count)))
+        .collect()
 }
 
 /// The rows of a list that was flat on its way; what is left over at its end is dropped.

@@ -1,7 +1,7 @@
 //! Room on the disk, reserved before it is written to.
 //!
-//! Where ranks write one file together, a full disk is not an error of all of them: the rank that meets it stops, and MPI-IO
-//! leaves the others waiting for it. So one rank reserves what the next write can need, and all of them hear the answer.
+//! A disk that is full in the middle of a step would leave a file that nobody can read, and with MPI-IO, which once wrote the
+//! fields, ranks that wait for each other. So what the next write can need is reserved first, and all ranks hear the answer.
 //! What a write leaves of its reservation counts for the next one, and is not a part of the file.
 
 use std::fs::File;

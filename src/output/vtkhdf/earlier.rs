@@ -4,7 +4,7 @@ use std::path::Path;
 
 use hdf5::{Dataset, File, H5Type};
 
-use super::types::{ArraySpec, Kind, Values};
+use super::types::{ArraySpec, Column, Kind};
 
 /// The steps of a closed file.
 pub(super) struct EarlierSteps {
@@ -15,21 +15,6 @@ pub(super) struct EarlierSteps {
     points: usize,
     // Last, so that everything in the file is released before the file itself.
     _file: File,
-}
-
-/// The values of an array for one step.
-pub(super) enum Column {
-    F64(Vec<f64>),
-    I32(Vec<i32>),
-}
-
-impl Column {
-    pub(super) fn values(&self) -> Values<'_> {
-        match self {
-            Self::F64(values) => Values::F64(values),
-            Self::I32(values) => Values::I32(values),
-        }
-    }
 }
 
 impl EarlierSteps {

@@ -2,8 +2,7 @@
 //!
 //! In: states of nodes and contact points. Out: `fields.vtkhdf`, `tools.vtkhdf` and `contact.vtkhdf`. Never: mechanics.
 //!
-//! Written by all ranks together through MPI-IO, one partition per rank, and by one rank alone without it; ParaView (5.12 or newer) and VTK's
-//! `vtkHDFReader` open it. The mesh and the cell arrays are stored once and every step points at them; only the
+//! Written by rank 0, one partition per rank; ParaView (5.12 or newer) and VTK's `vtkHDFReader` open it. The mesh and the cell arrays are stored once and every step points at them; only the
 //! point arrays grow.
 //!
 //! What holds when a run is killed: a step is written in two flushes, first its data, then the number of steps, so
@@ -12,11 +11,11 @@
 //! table does not depend on it. That is about the process: a machine that loses its power loses what the system has not
 //! brought to the disk yet, and has the last checkpoint, which is there for certain.
 
-mod collective;
 mod datasets;
 mod earlier;
 mod fields;
-mod layout;
+mod file;
+mod mesh;
 mod series;
 mod steps;
 mod types;

@@ -1,35 +1,27 @@
 //! The file of a series while it is written: one part of the mesh per rank, step after step.
+//!
+//! Rank 0 has the file, and the others send it their rows. A file of MPI-IO would be brought to the disk at every flush, and the
+//! values of a step are few: with two ranks that waiting was a third of the benchmark.
 
 use std::path::{Path, PathBuf};
 
-use hdf5::{Attribute, Dataset, File};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::collective::RowWriter;
-use super::datasets::{extend, write_values};
-use super::earlier::{Column, EarlierSteps};
-use super::layout::Layout;
-use super::steps::StepTable;
-use super::types::{ArraySpec, Part, Values};
+use super::earlier::EarlierSteps;
+use super::file::GrowingFile;
+use super::mesh::Mesh;
+use super::types::{ArraySpec, Column, Part, Values};
 use crate::output::error::{OutputError, agree};
-use crate::output::space::{self, BESIDE_VALUES};
 
-/// The file being written. Dropping it closes the file on all ranks together: do that before MPI is finalised.
+/// The file being written. Dropping it closes the file.
 pub(super) struct TimeSeries {
     path: PathBuf,
     comm: SimpleCommunicator,
-    steps: usize,
-    point_specs: Vec<ArraySpec>,
-    point_arrays: Vec<Dataset>,
+    point_arrays: Vec<ArraySpec>,
     local_points: usize,
-    first_point: usize,
-    total_points: usize,
-    table: StepTable,
-    count: Attribute,
-    writer: RowWriter,
-    // Last, so that everything in the file is released before the file itself.
-    file: File,
+    /// On rank 0.
+    file: Option<GrowingFile>,
 }
 
 impl TimeSeries {
@@ -50,49 +42,26 @@ impl TimeSeries {
         let checked = cell_arrays
             .iter()
             .try_for_each(|(spec, values)| values.check(spec, part.cells()));
+        let checked = part.check().and(checked);
         agree(
             comm,
-            part.check()
-                .and(checked)
-                .map_err(|reason| OutputError::mismatch(path, reason)),
+            checked.map_err(|reason| OutputError::mismatch(path, reason)),
         )?;
         let comm = comm.duplicate();
-        let layout = Layout::new(&comm, part);
-        let bytes = layout.mesh_bytes(point_arrays, cell_arrays);
-        let begun = match comm.rank() {
-            0 => begin(path, bytes),
-            _ => Ok(()),
-        };
-        agree(&comm, begun)?;
-        let opened = RowWriter::open(path, &comm);
-        let (file, writer) = agree(
-            &comm,
-            opened.map_err(|error| OutputError::hdf5(path, "opening it on all ranks", error)),
-        )?;
-        let failed = |error| OutputError::hdf5(path, "writing the mesh", error);
-        let made = layout
-            .define(&file, point_arrays, cell_arrays)
-            .map_err(|error| failed(error.to_string()));
-        let (point_datasets, table, count) = agree(&comm, made)?;
-        let written = layout
-            .write_mesh(&file, &writer, part, cell_arrays)
-            .map_err(failed);
-        agree(
-            &comm,
-            written.and(file.flush().map_err(|error| failed(error.to_string()))),
-        )?;
+        let mesh = Mesh::gather(&comm, part);
+        let cells: Vec<Option<(ArraySpec, Column)>> = cell_arrays
+            .iter()
+            .map(|(spec, values)| Some((*spec, values.gather(&comm)?)))
+            .collect();
+        let cells: Option<Vec<(ArraySpec, Column)>> = cells.into_iter().collect();
+        let created = mesh
+            .zip(cells)
+            .map(|(mesh, cells)| GrowingFile::create(path, &mesh, point_arrays, &cells));
         Ok(Self {
             path: path.into(),
-            steps: 0,
-            point_specs: point_arrays.to_vec(),
-            point_arrays: point_datasets,
+            point_arrays: point_arrays.to_vec(),
             local_points: part.points.len(),
-            first_point: layout.first_point,
-            total_points: layout.total_points,
-            table,
-            count,
-            writer,
-            file,
+            file: agree(&comm, created.transpose())?,
             comm,
         })
     }
@@ -104,45 +73,38 @@ impl TimeSeries {
     /// [`OutputError::Mismatch`] if the values do not fit, [`OutputError::NoSpace`] if the disk is full: then nothing has
     /// been written of the step. [`OutputError::Hdf5`] if they cannot be written.
     pub fn append(&mut self, t_ms: f64, values: &[Values]) -> Result<(), OutputError> {
-        let fits = if values.len() == self.point_specs.len() {
-            values
-                .iter()
-                .zip(&self.point_specs)
-                .try_for_each(|(values, spec)| values.check(spec, self.local_points))
+        let room = || self.file.as_ref().map_or(Ok(()), GrowingFile::reserve_step);
+        agree(&self.comm, self.check(values).and_then(|()| room()))?;
+        let mut written = Ok(());
+        for (array, values) in values.iter().enumerate() {
+            let column = values.gather(&self.comm);
+            // After a failure, too, the others send what they have.
+            if let (Some(file), Some(column), Ok(())) = (&self.file, column, &written) {
+                written = file.write(array, &column);
+            }
+        }
+        if let Some(file) = &mut self.file {
+            written = written.and_then(|()| file.end_step(t_ms));
+        }
+        let failed = |error| {
+            let doing = format!("writing the step at t = {t_ms} ms");
+            OutputError::hdf5(&self.path, doing, error)
+        };
+        agree(&self.comm, written.map_err(failed))
+    }
+
+    fn check(&self, values: &[Values]) -> Result<(), OutputError> {
+        let fits = if values.len() == self.point_arrays.len() {
+            let mut pairs = values.iter().zip(&self.point_arrays);
+            pairs.try_for_each(|(values, spec)| values.check(spec, self.local_points))
         } else {
             Err(format!(
                 "{} arrays given, {} expected",
                 values.len(),
-                self.point_specs.len()
+                self.point_arrays.len()
             ))
         };
-        agree(
-            &self.comm,
-            fits.map_err(|reason| OutputError::mismatch(&self.path, reason)),
-        )?;
-        let room = match self.comm.rank() {
-            0 => space::reserve_behind(&self.path, self.step_bytes()),
-            _ => Ok(()),
-        };
-        agree(&self.comm, room)?;
-        let written = self.append_everywhere(t_ms, values);
-        let failed = |reason| {
-            OutputError::hdf5(
-                &self.path,
-                format!("writing the step at t = {t_ms} ms"),
-                reason,
-            )
-        };
-        agree(&self.comm, written.map_err(failed))?;
-        self.steps += 1;
-        Ok(())
-    }
-
-    /// What the file can grow by with the next step.
-    fn step_bytes(&self) -> u64 {
-        let of_a_point = self.point_specs.iter().map(ArraySpec::bytes).sum::<usize>();
-        let beside = BESIDE_VALUES * self.point_specs.len() as u64;
-        (self.total_points * of_a_point) as u64 + beside + self.table.growth(self.steps)
+        fits.map_err(|reason| OutputError::mismatch(&self.path, reason))
     }
 
     /// Repeats the steps of a closed file with the same arrays, in which row `rows[i]` of every step is this rank's
@@ -152,7 +114,7 @@ impl TimeSeries {
     /// [`OutputError::Read`] if the file is another one, or as [`TimeSeries::append`].
     pub fn replay(&mut self, from: &Path, rows: &[usize]) -> Result<(), OutputError> {
         let failed = |reason| OutputError::read(from, reason);
-        let opened = EarlierSteps::open(from, &self.point_specs);
+        let opened = EarlierSteps::open(from, &self.point_arrays);
         let mut earlier = agree(&self.comm, opened.map_err(failed))?;
         for step in 0..earlier.times.len() {
             let read = earlier.read(step, rows);
@@ -162,50 +124,4 @@ impl TimeSeries {
         }
         Ok(())
     }
-
-    /// The same collective calls on every rank, also after a failure: a rank that left early would leave the others
-    /// waiting for ever. The first failure is kept.
-    fn append_everywhere(&self, t_ms: f64, values: &[Values]) -> Result<(), String> {
-        let first_row = self.steps * self.total_points;
-        let mut first_failure = Ok(());
-        let mut keep = |result: Result<(), String>| {
-            if first_failure.is_ok() {
-                first_failure = result;
-            }
-        };
-        for (dataset, values) in self.point_arrays.iter().zip(values) {
-            keep(extend(dataset, first_row + self.total_points));
-            keep(write_values(
-                &self.writer,
-                dataset,
-                first_row + self.first_point,
-                values,
-            ));
-        }
-        keep(self.table.append(
-            &self.writer,
-            self.steps,
-            t_ms,
-            first_row as i64,
-            self.comm.rank() == 0,
-        ));
-        keep(self.file.flush().map_err(|error| error.to_string()));
-        keep(
-            self.count
-                .write_scalar(&(self.steps as i64 + 1))
-                .map_err(|error| error.to_string()),
-        );
-        keep(self.file.flush().map_err(|error| error.to_string()));
-        first_failure
-    }
-}
-
-/// Makes an empty file, with room for `bytes`, for all ranks to open. On one rank.
-fn begin(path: &Path, bytes: u64) -> Result<(), OutputError> {
-    let failed = |error| OutputError::hdf5(path, "creating it", error);
-    let file = File::create(path).map_err(failed)?;
-    space::reserve_behind(path, bytes)?;
-    // This cuts the file to its size, and the reservation off.
-    file.close().map_err(failed)?;
-    space::reserve_behind(path, bytes)
 }

@@ -1,9 +1,8 @@
 //! The table of steps of a VTKHDF file: for each step its time, and where its data start.
 
-use hdf5::{Attribute, Dataset, Group, H5Type};
+use hdf5::{Attribute, Dataset, Group};
 
-use super::collective::RowWriter;
-use super::datasets::{extend, extendable};
+use super::datasets::{append_rows, extend, extendable};
 use super::types::ArraySpec;
 use crate::output::space::BESIDE_VALUES;
 
@@ -23,20 +22,20 @@ pub(super) struct StepTable {
 }
 
 impl StepTable {
-    /// Makes the empty table and the counter of steps. Collective.
+    /// Makes the empty table and the counter of steps of a mesh with so many parts.
     pub(super) fn define(
         root: &Group,
         point_arrays: &[ArraySpec],
         cell_arrays: &[&str],
-        ranks: usize,
+        parts: usize,
     ) -> hdf5::Result<(Self, Attribute)> {
         let steps = root.create_group("Steps")?;
         let count = steps.new_attr::<i64>().create("NSteps")?;
         count.write_scalar(&0_i64)?;
         let times = extendable::<f64>(&steps, "Values", 1, STEPS_PER_CHUNK)?;
         let builder = || steps.new_dataset::<i64>();
-        let parts = builder().chunk(STEPS_PER_CHUNK).fill_value(ranks as i64);
-        let parts = parts.shape(0..).create("NumberOfParts")?;
+        let part_counts = builder().chunk(STEPS_PER_CHUNK).fill_value(parts as i64);
+        let part_counts = part_counts.shape(0..).create("NumberOfParts")?;
         let zeros = builder().chunk(STEPS_PER_CHUNK).fill_value(0_i64);
         let zeros = zeros.shape(0..).create("PartOffsets")?;
         let zero_rows = builder().chunk((STEPS_PER_CHUNK, 1)).fill_value(0_i64);
@@ -59,7 +58,7 @@ impl StepTable {
         let this = Self {
             times,
             point_offsets,
-            constants: [parts, zeros, zero_rows],
+            constants: [part_counts, zeros, zero_rows],
         };
         Ok((this, count))
     }
@@ -73,44 +72,14 @@ impl StepTable {
         DATASETS as u64 * (chunk as u64 + BESIDE_VALUES)
     }
 
-    /// Adds the row of step number `step` (counted from 0) whose point data start at row `first_row`. Collective;
-    /// rank 0 writes. Every rank makes all calls, the first failure is returned.
-    pub(super) fn append(
-        &self,
-        writer: &RowWriter,
-        step: usize,
-        t_ms: f64,
-        first_row: i64,
-        writes: bool,
-    ) -> Result<(), String> {
-        let mut results = vec![append_one(writer, &self.times, step, t_ms, writes)];
-        let offsets = self.point_offsets.iter();
-        results.extend(offsets.map(|offsets| append_one(writer, offsets, step, first_row, writes)));
-        results.extend(
-            self.constants
-                .iter()
-                .map(|dataset| extend(dataset, step + 1)),
-        );
-        results.into_iter().collect()
+    /// Adds the row of step number `step` (counted from 0) whose point data start at row `first_row`.
+    pub(super) fn append(&self, step: usize, t_ms: f64, first_row: usize) -> hdf5::Result<()> {
+        append_rows(&self.times, step, &[t_ms])?;
+        if let Some(offsets) = &self.point_offsets {
+            append_rows(offsets, step, &[first_row as i64])?;
+        }
+        self.constants
+            .iter()
+            .try_for_each(|dataset| extend(dataset, step + 1))
     }
-}
-
-fn append_one<T: H5Type>(
-    writer: &RowWriter,
-    dataset: &Dataset,
-    step: usize,
-    value: T,
-    writes: bool,
-) -> Result<(), String> {
-    let extended = extend(dataset, step + 1);
-    let written = writer.write(
-        dataset,
-        step,
-        if writes {
-            std::slice::from_ref(&value)
-        } else {
-            &[]
-        },
-    );
-    extended.and(written)
 }

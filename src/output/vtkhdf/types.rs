@@ -1,5 +1,9 @@
 //! What the files of a series are made of: cells, parts of the mesh, and arrays with their values.
 
+use mpi::traits::Communicator;
+
+use crate::ranks::gather_on_first;
+
 /// VTK's numbers for the cell types used here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
@@ -93,7 +97,33 @@ pub(super) enum Values<'a> {
     I32(&'a [i32]),
 }
 
+/// The values of an array, owned.
+#[derive(Debug, Clone)]
+pub(super) enum Column {
+    /// Double precision.
+    F64(Vec<f64>),
+    /// 32-bit integers.
+    I32(Vec<i32>),
+}
+
+impl Column {
+    pub(super) fn values(&self) -> Values<'_> {
+        match self {
+            Self::F64(values) => Values::F64(values),
+            Self::I32(values) => Values::I32(values),
+        }
+    }
+}
+
 impl Values<'_> {
+    /// Those of all ranks on rank 0, in the order of the ranks. Collective.
+    pub(super) fn gather(&self, comm: &impl Communicator) -> Option<Column> {
+        match self {
+            Self::F64(values) => gather_on_first(comm, values).map(Column::F64),
+            Self::I32(values) => gather_on_first(comm, values).map(Column::I32),
+        }
+    }
+
     pub(super) fn check(&self, spec: &ArraySpec, rows: usize) -> Result<(), String> {
         let (kind, length) = match self {
             Self::F64(values) => (Kind::F64, values.len()),
