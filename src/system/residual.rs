@@ -52,7 +52,7 @@ impl Subdomain {
 
     /// Adds the internal forces of this rank's elements at unknowns `u` (local), divided by Young's
     /// modulus (mm), to the displacement rows of `out`, and puts their stiffness where it is wanted.
-    pub(super) fn add_internal_forces(
+    pub fn add_internal_forces(
         &self,
         history: &History,
         u: &[f64],

@@ -235,7 +235,7 @@ impl Statics {
         let values = self.system.local_values(self.path.unknowns())?;
         let mut forces = vec![0.0; values.len()];
         let local = self.system.local();
-        local.add_internal_forces(&self.path.history(), &values, &mut forces)?;
+        local.add_internal_forces(&self.path.history(), &values, None, &mut forces)?;
         let young = local.problem().young_modulus;
         let pairs = forces.chunks_exact(2).map(|f| [young * f[0], young * f[1]]);
         // A node between two ranks has a share on each.
