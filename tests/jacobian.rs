@@ -68,3 +68,23 @@ fn the_tangent_is_that_of_the_residual_on_two_ranks() {
         &errors("two", 2, &["-stroke", "0.5", "-time_load", "16"]),
     );
 }
+
+#[test]
+fn whether_a_residual_begins_the_tangent_changes_no_bit() {
+    // A Jacobian that may have to serve again is not begun by a residual; asked to serve once, it is as any other.
+    let history = |name: &str, more: &[&str]| {
+        let folder = scratch(&format!("jacobian-{name}"));
+        let mut words = vec!["-output_dir", folder.to_str().unwrap()];
+        words.extend(
+            "-sheet_nx 40 -sheet_ny 2 -stroke 6 -time_load 189 -unload_fraction 0 -report_strokes none -output_every 0 \
+             -friction_coefficient 0.1342"
+                .split(' '),
+        );
+        words.extend(more);
+        assert!(run(1, 120, &words).says("FINISHED"), "{name}");
+        std::fs::read_to_string(folder.join("history.csv")).unwrap()
+    };
+    let alone = history("alone", &["-snes_lag_jacobian", "1"]);
+    assert_eq!(history("begun", &[]), alone);
+    assert_ne!(history("lagging", &["-snes_lag_jacobian", "2"]), alone);
+}

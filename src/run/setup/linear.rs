@@ -111,11 +111,18 @@ const NEED_ENTRIES: &[&str] = &[
     "snes_mf_operator",
 ];
 
+/// Options with which residuals are evaluated between a Jacobian and a solve with it, besides those.
+const NEED_OLD_ENTRIES: &[&str] = &["snes_lag_jacobian"];
+
 /// The linear solve the options ask for, with the Jacobian it works on.
 pub(in crate::run) struct LinearSolve {
     system: Rc<System>,
     entries: RefCell<JacobianEntries>,
     condensed: Option<Rc<CondensedSolve>>,
+    /// Whether somebody reads the entries from the matrix.
+    reads_matrix: bool,
+    /// Whether a residual may begin the next Jacobian: no solve will be with the last one.
+    begins_jacobian: bool,
 }
 
 impl LinearSolve {
@@ -123,7 +130,10 @@ impl LinearSolve {
     pub fn chosen(system: &Rc<System>) -> petsc::Result<Rc<Self>> {
         let choice = choose(system.comm())?;
         let condensed = choice.map(|choice| CondensedSolve::new(system, choice).map(Rc::new));
+        let reads_matrix = choice.is_none() || any_given(NEED_ENTRIES)?;
         Ok(Rc::new(Self {
+            reads_matrix,
+            begins_jacobian: !reads_matrix && !any_given(NEED_OLD_ENTRIES)?,
             entries: RefCell::new(system.jacobian_entries()),
             condensed: condensed.transpose()?,
             system: Rc::clone(system),
@@ -137,11 +147,7 @@ impl LinearSolve {
 
     /// The Jacobian's matrix: without entries if nobody reads them.
     pub fn matrix(&self) -> petsc::Result<Matrix> {
-        let mut read = self.condensed.is_none();
-        for name in NEED_ENTRIES {
-            read |= options::is_given(name)?;
-        }
-        if read {
+        if self.reads_matrix {
             self.system.matrix()
         } else {
             self.system.placeholder_matrix()
@@ -162,7 +168,7 @@ impl LinearSolve {
         out: &mut VectorRef,
     ) -> Result<(), EvaluationError> {
         let entries = &mut *self.entries.borrow_mut();
-        if expected {
+        if expected && self.begins_jacobian {
             return self
                 .system
                 .residual_and_stiffness(history, t, (u, a), entries, out);
@@ -279,11 +285,8 @@ fn choose(comm: &SimpleCommunicator) -> petsc::Result<Option<SolverChoice>> {
     let mut method = CondensedMethod::Whole;
     if options::get(PACKAGE)?.as_deref() == Some(DEFAULT_PACKAGE) {
         set_defaults(PACKAGE_DEFAULTS)?;
-        method = CondensedMethod::Substructures;
-    }
-    for name in CHOOSE_WHOLE {
-        if options::is_given(name)? {
-            method = CondensedMethod::Whole;
+        if !any_given(CHOOSE_WHOLE)? {
+            method = CondensedMethod::Substructures;
         }
     }
     Ok(Some(SolverChoice {
@@ -313,6 +316,16 @@ pub(super) fn is_direct() -> petsc::Result<bool> {
 pub(in crate::run) fn left_to_petsc() -> petsc::Result<bool> {
     let other_solver = value("snes_type")?.is_some_and(|given| given != SOLVER);
     Ok(options::is_given(LEFT_TO_PETSC)? || other_solver)
+}
+
+/// Whether the user has given one of these options.
+fn any_given(names: &[&str]) -> petsc::Result<bool> {
+    for name in names {
+        if options::is_given(name)? {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// Where the user has not chosen.
