@@ -49,6 +49,7 @@ impl TimeSeries {
         )?;
         let comm = comm.duplicate();
         let mesh = Mesh::gather(&comm, part);
+        // Every array, also on a rank where nothing arrives: one that stopped at the first would leave rank 0 waiting.
         let cells: Vec<Option<(ArraySpec, Column)>> = cell_arrays
             .iter()
             .map(|(spec, values)| Some((*spec, values.gather(&comm)?)))

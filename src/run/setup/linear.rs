@@ -111,7 +111,7 @@ const NEED_ENTRIES: &[&str] = &[
     "snes_mf_operator",
 ];
 
-/// Options with which residuals are evaluated between a Jacobian and a solve with it, besides those.
+/// Options with which a Jacobian is solved with after residuals elsewhere, as with those above, but without its matrix.
 const NEED_OLD_ENTRIES: &[&str] = &["snes_lag_jacobian"];
 
 /// The linear solve the options ask for, with the Jacobian it works on.
