@@ -45,22 +45,15 @@ impl Subdomain {
                 gauss_points.push(kernel.evaluated(point, response, f, excess));
             }
         }
-        let contacts = self.contacts.iter().zip(&before.friction).enumerate();
-        let contact = |(point, (contact, committed))| {
-            let position = self.contact_position(contact, committed, t, u);
-            let multiplier = u[self.multiplier(point)];
-            (
-                position,
-                contact.law.traction(&position, multiplier, committed),
-            )
-        };
+        let points = 0..self.contacts.len();
+        let contacts = points.map(|point| self.contact_answer(before, t, u, point));
         Ok(EvaluatedStep {
             of: self,
             before,
             u,
             a,
             gauss_points,
-            contacts: contacts.map(contact).collect(),
+            contacts: contacts.collect(),
         })
     }
 }
