@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use program::{command, history, run, scratch, summary};
+use program::{command, history, run, scratch, send, summary};
+use rustix::process::Signal;
 
 const CASE: &str = "-sheet_nx 40 -sheet_ny 2 -stroke 8 -time_load 252 -unload_fraction 0 -report_strokes none \
                     -dt_max 3 -checkpoint_every 4";
@@ -108,10 +109,7 @@ fn one_rank_that_is_killed_ends_them_all() {
     }
     let ranks = children(child.id());
     assert_eq!(ranks.len(), 3);
-    let killed = Command::new("kill")
-        .args(["-KILL", &ranks[1].to_string()])
-        .status();
-    assert!(killed.unwrap().success());
+    send(ranks[1], Signal::KILL);
     let ended = child.wait().unwrap();
     assert!(!ended.success(), "{ended}");
     assert!(!folder.join("summary.json").exists());

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-use program::{Ended, command, fields, history, run, scratch, summary};
+use program::{Ended, command, fields, history, run, scratch, send, summary};
+use rustix::process::Signal;
 
 const CASE: &str = "-sheet_nx 20 -sheet_ny 2 -stroke 2 -time_load 63 -unload_fraction 0.3 -time_unload 20 \
                     -report_strokes 1 -output_every 2";
@@ -187,7 +188,7 @@ const LONGER: &str = "-sheet_nx 60 -sheet_ny 2 -stroke 12 -time_load 378 -unload
                       -dt_max 3 -output_every 10";
 
 /// Starts the program, waits until it has made some steps, and sends a signal.
-fn signal_after_steps(folder: &Path, ranks: usize, signal: &str) -> (Child, Option<i32>, String) {
+fn signal_after_steps(folder: &Path, ranks: usize, signal: Signal) -> (Child, Option<i32>, String) {
     let log = folder.with_extension("log");
     let mut child = command(ranks, &words(folder, &[LONGER]))
         .stdout(std::fs::File::create(&log).unwrap())
@@ -201,11 +202,7 @@ fn signal_after_steps(folder: &Path, ranks: usize, signal: &str) -> (Child, Opti
         assert!(began.elapsed() < Duration::from_secs(60), "no steps");
         std::thread::sleep(Duration::from_millis(10));
     }
-    let killed = std::process::Command::new("kill")
-        .args([signal, &child.id().to_string()])
-        .status()
-        .unwrap();
-    assert!(killed.success());
+    send(child.id(), signal);
     let code = child.wait().unwrap().code();
     (child, code, std::fs::read_to_string(log).unwrap())
 }
@@ -215,18 +212,22 @@ fn a_signal_ends_a_run_that_goes_on_later() {
     let folder = scratch("restart-signal");
     let unbroken = folder.join("unbroken");
     assert_eq!(start(&unbroken, 1, &[LONGER]).code, Some(0));
-    for (ranks, signal) in [(1, "-TERM"), (1, "-INT"), (2, "-USR1")] {
-        let stopped = folder.join(format!("stopped{signal}"));
+    for (ranks, signal, name) in [
+        (1, Signal::TERM, "SIGTERM"),
+        (1, Signal::INT, "SIGINT"),
+        (2, Signal::USR1, "SIGUSR1"),
+    ] {
+        let stopped = folder.join(format!("stopped-{name}"));
         let (_, code, text) = signal_after_steps(&stopped, ranks, signal);
-        assert_eq!(code, Some(3), "{signal}: {text}");
+        assert_eq!(code, Some(3), "{name}: {text}");
         assert!(
             text.contains("INTERRUPTED") && !text.contains("FINISHED"),
             "{text}"
         );
-        assert!(text.contains(&format!("SIG{}", &signal[1..])), "{text}");
+        assert!(text.contains(name), "{text}");
         let end = summary(&stopped);
         assert_eq!(end["status"], "interrupted");
-        assert!(end["reason"].as_str().unwrap().contains(&signal[1..]));
+        assert!(end["reason"].as_str().unwrap().contains(name));
         let made = history(&stopped)["t_ms"].len();
         assert!(
             stopped

@@ -7,6 +7,8 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use rustix::process::{Pid, Signal, kill_process};
+
 #[path = "../mpi_environment/mod.rs"]
 mod mpi_environment;
 pub use mpi_environment::FEW_CORES;
@@ -37,6 +39,12 @@ pub fn scratch(name: &str) -> PathBuf {
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
     folder
+}
+
+/// Sends a signal to a process.
+pub fn send(process: u32, signal: Signal) {
+    let process = Pid::from_raw(process as i32).expect("a process has a number");
+    kill_process(process, signal).unwrap();
 }
 
 /// The program on some ranks with these words, not started; without a limit of time.
