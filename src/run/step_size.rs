@@ -245,6 +245,21 @@ mod tests {
     }
 
     #[test]
+    fn steps_end_at_the_strokes_and_returns_asked_for_and_at_none_beyond() {
+        let mut case = Case::reference().unwrap();
+        let before = landmarks(&case).unwrap();
+        let motion = case.loading.motion();
+        case.stepping.report_strokes.extend([3.0, 40.0]);
+        case.stepping.report_returns = vec![0.57, 2.85, 5.0];
+        let after = landmarks(&case).unwrap();
+        let new: Vec<f64> = after.into_iter().filter(|t| !before.contains(t)).collect();
+        let depths: Vec<f64> = new.iter().map(|&t| motion.depth(t)).collect();
+        assert!(depths.len() == 2, "{depths:?}");
+        assert!((depths[0] - 3.0).abs() < 1e-12 && (depths[1] - 27.93).abs() < 1e-12);
+        assert!(new[0] < motion.time_load && new[1] > motion.time_load);
+    }
+
+    #[test]
     fn a_touchdown_ends_a_step_and_the_next_ones_are_short() {
         let mut control = StepControl::new(8.0, 8.0, vec![1000.0]);
         control.end_at_touchdown(0.25);
